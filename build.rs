@@ -1,0 +1,220 @@
+//! Chooses the SPIR-V that the library embeds: the committed modules, or ones that rust-gpu
+//! compiles here and now (feature `compile-kernel`).
+//!
+//! The committed modules stand for the kernel's sources only as long as their manifest says so.
+//! This script writes the manifest that the sources on disk call for and compares the two texts;
+//! a kernel that was edited without being compiled stops the build.
+
+use std::error::Error;
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+use std::{env, fs};
+
+/// The modules: name, file, SPIR-V target, capabilities beyond `Shader`.
+const MODULES: &[Module] = &[Module {
+    name: "f32",
+    target: "spirv-unknown-spv1.3",
+}];
+
+struct Module {
+    name: &'static str,
+    target: &'static str,
+}
+
+impl Module {
+    fn file(&self) -> String {
+        format!("{}.spv", self.name)
+    }
+}
+
+type Result<T> = std::result::Result<T, Box<dyn Error>>;
+
+fn main() {
+    println!("cargo::rerun-if-changed=build.rs");
+    if let Err(error) = run() {
+        println!("cargo::error={error}");
+        std::process::exit(1);
+    }
+}
+
+fn run() -> Result<()> {
+    println!("cargo::rustc-check-cfg=cfg(kernel_compiled_here)");
+    let kernel = PathBuf::from(env_var("DEP_SPHERULE_KERNEL_ROOT")?);
+    println!("cargo::rerun-if-changed={}", kernel.join("src").display());
+    println!("cargo::rerun-if-changed={}", kernel.join("spirv").display());
+
+    #[cfg(feature = "compile-kernel")]
+    {
+        let out = PathBuf::from(env_var("OUT_DIR")?).join("spirv");
+        compile::compile(&kernel, &out)?;
+        fs::write(out.join("manifest.toml"), manifest(&kernel, &out)?)?;
+        println!("cargo::rustc-cfg=kernel_compiled_here");
+        Ok(())
+    }
+    #[cfg(not(feature = "compile-kernel"))]
+    check_committed(&kernel)
+}
+
+#[cfg(not(feature = "compile-kernel"))]
+fn check_committed(kernel: &Path) -> Result<()> {
+    let committed = fs::read_to_string(kernel.join("spirv/manifest.toml")).unwrap_or_default();
+    if without_dependencies(&committed, kernel)
+        == without_dependencies(&manifest(kernel, &kernel.join("spirv"))?, kernel)
+    {
+        return Ok(());
+    }
+    Err("the kernel's sources and its committed SPIR-V differ: build with `--features compile-kernel` to use \
+         your change, and run `SPHERULE_RENEW_KERNEL=1 cargo test --release --features compile-kernel --test kernel_spirv` \
+         to renew the committed modules"
+        .into())
+}
+
+/// The manifest as compared: away from this workspace (in a package from a registry) the lock
+/// file is the dependant's, and what it locks did not make the committed modules.
+#[cfg(not(feature = "compile-kernel"))]
+fn without_dependencies(manifest: &str, kernel: &Path) -> String {
+    let keep_all = workspace_lock(kernel).is_some();
+    manifest
+        .lines()
+        .filter(|line| keep_all || !line.starts_with("dependencies"))
+        .map(|line| format!("{line}\n"))
+        .collect()
+}
+
+/// What the modules in `modules` were made of, as TOML.
+fn manifest(kernel: &Path, modules: &Path) -> Result<String> {
+    let mut text = String::from(
+        "# Written by the test `kernel_spirv`; read by build.rs. What the modules beside this file are made of.\n",
+    );
+    writeln!(text, "compiler = \"rust-gpu 0.11.0\"")?;
+    writeln!(text, "sources = \"{}\"", digest_sources(&kernel.join("src"))?)?;
+    let locked = workspace_lock(kernel)
+        .map(|lock| locked_dependencies(&lock))
+        .unwrap_or_default();
+    writeln!(text, "dependencies = [{}]", locked.join(", "))?;
+    for module in MODULES {
+        let bytes = fs::read(modules.join(module.file())).unwrap_or_default();
+        writeln!(text, "\n[{}]", module.name)?;
+        writeln!(text, "file = \"{}\"", module.file())?;
+        writeln!(text, "target = \"{}\"", module.target)?;
+        writeln!(text, "bytes = {}", bytes.len())?;
+        writeln!(text, "sha256 = \"{}\"", hex(&hmac_sha256::Hash::hash(&bytes)))?;
+    }
+    Ok(text)
+}
+
+/// The SHA-256 of every file below `dir`, by path, line ends made `\n`.
+fn digest_sources(dir: &Path) -> Result<String> {
+    let mut files = Vec::new();
+    collect_files(dir, &mut files)?;
+    files.sort();
+    let mut hash = hmac_sha256::Hash::new();
+    for file in files {
+        let name = file.strip_prefix(dir)?.to_string_lossy().replace('\\', "/");
+        let text = fs::read_to_string(&file)
+            .map_err(|error| format!("cannot read {}: {error}", file.display()))?
+            .replace("\r\n", "\n");
+        hash.update(name.as_bytes());
+        hash.update([0]);
+        hash.update(text.as_bytes());
+        hash.update([0]);
+    }
+    Ok(hex(&hash.finalize()))
+}
+
+fn collect_files(dir: &Path, files: &mut Vec<PathBuf>) -> Result<()> {
+    let entries =
+        fs::read_dir(dir).map_err(|error| format!("cannot list {}: {error}", dir.display()))?;
+    for entry in entries {
+        let path = entry?.path();
+        if path.is_dir() {
+            collect_files(&path, files)?;
+        } else if path.extension().is_some_and(|extension| extension == "rs") {
+            files.push(path);
+        }
+    }
+    Ok(())
+}
+
+/// The lock file, where the kernel is the one beside this script.
+fn workspace_lock(kernel: &Path) -> Option<String> {
+    let root = PathBuf::from(env::var_os("CARGO_MANIFEST_DIR")?);
+    let is_ours = kernel.canonicalize().ok()? == root.join("kernel").canonicalize().ok()?;
+    is_ours
+        .then(|| {
+            println!("cargo::rerun-if-changed={}", root.join("Cargo.lock").display());
+            fs::read_to_string(root.join("Cargo.lock")).ok()
+        })
+        .flatten()
+}
+
+/// The locked versions of what ends up in the kernel's code, as TOML strings.
+fn locked_dependencies(lock: &str) -> Vec<String> {
+    // spirv-std can use several versions of glam, and the lock file holds them all.
+    const IN_THE_KERNEL: &[(&str, &str)] = &[
+        ("bytemuck", ""),
+        ("glam", "0.34."),
+        ("libm", ""),
+        ("num-traits", ""),
+        ("spirv-std", ""),
+    ];
+    let mut name = None;
+    let mut found = Vec::new();
+    for line in lock.lines() {
+        let value = |key: &str| {
+            line.strip_prefix(key)
+                .and_then(|rest| rest.strip_prefix(" = \""))
+                .and_then(|rest| rest.strip_suffix('"'))
+        };
+        if let Some(value) = value("name") {
+            name = IN_THE_KERNEL.iter().find(|(known, _)| *known == value);
+        } else if let (Some((name, series)), Some(version)) = (name, value("version"))
+            && version.starts_with(series)
+        {
+            found.push(format!("\"{name} {version}\""));
+        }
+    }
+    found
+}
+
+fn hex(bytes: &[u8]) -> String {
+    bytes.iter().fold(String::new(), |mut text, byte| {
+        // Writing to a String cannot fail.
+        let _ = write!(text, "{byte:02x}");
+        text
+    })
+}
+
+fn env_var(name: &str) -> Result<String> {
+    env::var(name).map_err(|error| format!("{name}: {error}").into())
+}
+
+#[cfg(feature = "compile-kernel")]
+mod compile {
+    use super::{MODULES, Path, Result, fs};
+    use cargo_gpu_install::install::Install;
+
+    /// Compiles every module of `kernel` into `out`.
+    pub(super) fn compile(kernel: &Path, out: &Path) -> Result<()> {
+        fs::create_dir_all(out)?;
+        let backend = Install::from_shader_crate(kernel.to_path_buf())
+            .within_build_script()
+            .run()
+            .map_err(|error| {
+                format!(
+                    "rust-gpu could not be installed ({error:#}): it needs rustup and the network once; \
+                     without the feature `compile-kernel` the committed modules are used"
+                )
+            })?;
+        for module in MODULES {
+            let mut builder = backend.to_spirv_builder(kernel, module.target);
+            builder.build_script.defaults = true;
+            builder.shader_crate_features.features = vec!["entry-points".into()];
+            let built = builder
+                .build()
+                .map_err(|error| format!("the kernel does not compile for the GPU: {error}"))?;
+            fs::copy(built.module.unwrap_single(), out.join(module.file()))?;
+        }
+        Ok(())
+    }
+}

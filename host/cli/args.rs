@@ -1,0 +1,150 @@
+//! The arguments, and the help texts.
+
+use std::path::PathBuf;
+use std::str::FromStr;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use spherule_kernel::Shading;
+
+use crate::device::DeviceChoice;
+use crate::film::file::Format;
+use crate::scene::MAX_IMAGE_SIDE;
+
+/// A ray tracer for spheres, whose kernel is Rust on the GPU and on the CPU.
+#[derive(Debug, Parser)]
+#[command(version, propagate_version = true, arg_required_else_help = true)]
+#[command(after_help = "Example: spherule render scenes/two-spheres.toml -o out.png")]
+pub(super) struct Arguments {
+    #[command(subcommand)]
+    pub(super) command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub(super) enum Command {
+    /// Render a scene or a molecule into an image
+    Render(RenderArguments),
+    /// List the devices that can render
+    Devices(DevicesArguments),
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Exit codes: 0 done, 1 the render or the check failed, 2 the input is wrong.\n\
+    SPHERULE_LOG=debug logs what happens; RAYON_NUM_THREADS=N limits the CPU's threads.")]
+pub(super) struct RenderArguments {
+    /// The scene (.toml) or molecule (.pdb, .ent, .xyz)
+    pub(super) input: PathBuf,
+
+    /// The image to write: 8-bit PNG, or linear 32-bit float EXR [default: the input's name with .png, here]
+    #[arg(short, long, value_name = "OUT.png|OUT.exr", value_parser = image_path)]
+    pub(super) output: Option<PathBuf>,
+
+    /// The image's size in pixels [default: the scene's, or 1280x720]
+    #[arg(long, value_name = "WxH")]
+    pub(super) size: Option<Size>,
+
+    /// What renders: auto (a real GPU, else the CPU), gpu (a software one too), cpu, or a part of an adapter's name
+    #[arg(long, value_name = "auto|gpu|cpu|NAME", default_value = "auto")]
+    pub(super) device: DeviceChoice,
+
+    /// What the image shows of a hit
+    #[arg(long, value_enum, default_value = "lit")]
+    pub(super) shade: Shade,
+
+    /// Render on the other path too (CPU against GPU), print the difference, and fail above 0.1 % of the pixels off by more than 2/255
+    #[arg(long)]
+    pub(super) check: bool,
+
+    /// Write timings and counts as JSON; - writes to stdout
+    #[arg(long, value_name = "FILE.json")]
+    pub(super) stats: Option<PathBuf>,
+
+    /// Print nothing but errors
+    #[arg(short, long)]
+    pub(super) quiet: bool,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct DevicesArguments {
+    /// Print JSON
+    #[arg(long)]
+    pub(super) json: bool,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(super) enum Shade {
+    /// A lamp at the eye, with the material's colour
+    Lit,
+    /// The surface normal n as the colour n · 0.5 + 0.5
+    Normals,
+    /// The distance from the eye: white is near, black is far (EXR: in scene units)
+    Depth,
+    /// Red where there is a hit
+    Flat,
+}
+
+impl From<Shade> for Shading {
+    fn from(shade: Shade) -> Self {
+        match shade {
+            Shade::Lit => Self::Lit,
+            Shade::Normals => Self::Normals,
+            Shade::Depth => Self::Depth,
+            Shade::Flat => Self::Flat,
+        }
+    }
+}
+
+/// An image's size, written `1280x720`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Size {
+    pub(super) width: u32,
+    pub(super) height: u32,
+}
+
+impl FromStr for Size {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let side = |text: &str| {
+            text.parse()
+                .ok()
+                .filter(|side| (1..=MAX_IMAGE_SIDE).contains(side))
+        };
+        text.split_once(['x', 'X', '×'])
+            .and_then(|(width, height)| {
+                Some(Self {
+                    width: side(width)?,
+                    height: side(height)?,
+                })
+            })
+            .ok_or_else(|| {
+                format!("give width and height, each from 1 to {MAX_IMAGE_SIDE}, for example 1280x720")
+            })
+    }
+}
+
+fn image_path(text: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(text);
+    match Format::of(&path) {
+        Ok(_) => Ok(path),
+        Err(error) => Err(error.help()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_arguments_are_consistent() {
+        Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn sizes_are_read_or_refused() {
+        assert_eq!("17x13".parse(), Ok(Size { width: 17, height: 13 }));
+        for bad in ["", "17", "17x", "0x1", "1x70000", "-1x1", "1.5x1", "axb"] {
+            assert!(bad.parse::<Size>().is_err(), "{bad}");
+        }
+    }
+}

@@ -1,0 +1,88 @@
+//! The command line: arguments, what is printed, and exit codes. What it does is in the library.
+//!
+//! Exit codes: 0 done, 1 the machine could not do it (or a check failed), 2 the input is wrong.
+
+mod args;
+mod devices;
+mod progress;
+mod render;
+mod report;
+
+use std::io::Write;
+use std::process::ExitCode;
+
+use clap::Parser;
+use tracing_subscriber::filter::{LevelFilter, Targets};
+use tracing_subscriber::prelude::*;
+
+use args::{Arguments, Command};
+
+/// Runs the command line of this process.
+#[must_use]
+pub fn main() -> ExitCode {
+    set_panic_hook();
+    quiet_mesa();
+    start_log();
+    let done = match Arguments::parse().command {
+        Command::Render(arguments) => render::run(&arguments),
+        Command::Devices(arguments) => devices::run(&arguments),
+    };
+    match done {
+        Ok(code) => code,
+        Err(error) => {
+            let code = if error.is_input() { 2 } else { 1 };
+            report::print(&error);
+            ExitCode::from(code)
+        }
+    }
+}
+
+/// Prints to stdout; a reader that has gone away is no error.
+fn print(text: &str) {
+    let _ = std::io::stdout().write_all(text.as_bytes());
+}
+
+/// What the library and wgpu log goes to stderr; `SPHERULE_LOG` sets how much, for example
+/// `debug` or `spherule=debug,wgpu_hal=info`.
+fn start_log() {
+    let quiet = Targets::new()
+        .with_default(LevelFilter::ERROR)
+        .with_target("spherule", LevelFilter::WARN)
+        // wgpu's errors reach the user as errors of the call that caused them.
+        .with_target("wgpu_core", LevelFilter::OFF)
+        .with_target("wgpu_hal", LevelFilter::OFF);
+    let filter = std::env::var("SPHERULE_LOG")
+        .ok()
+        .and_then(|text| text.parse::<Targets>().ok())
+        .unwrap_or(quiet);
+    let stderr = tracing_subscriber::fmt::layer()
+        .with_writer(std::io::stderr)
+        .without_time()
+        .with_target(false)
+        .compact();
+    tracing_subscriber::registry()
+        .with(stderr.with_filter(filter))
+        .init();
+}
+
+/// On a machine without a desktop session, Mesa's device-select layer complains on stderr that
+/// it finds no Wayland socket. The layer only reorders adapters, which spherule does itself.
+fn quiet_mesa() {
+    if std::env::var_os("XDG_RUNTIME_DIR").is_none() {
+        // SAFETY: the process has no other thread yet.
+        unsafe { std::env::set_var("NODEVICE_SELECT", "1") };
+    }
+}
+
+/// A panic is a mistake of ours; say so. One that the library catches is reported as an error
+/// instead.
+fn set_panic_hook() {
+    std::panic::set_hook(Box::new(|panic| {
+        if !crate::device::is_waiting() {
+            let _ = writeln!(
+                std::io::stderr(),
+                "spherule: internal error, please report it: {panic}"
+            );
+        }
+    }));
+}

@@ -1,0 +1,50 @@
+//! A progress bar on stderr, where it is a terminal and the work takes long enough to wonder.
+
+use std::io::IsTerminal;
+use std::sync::OnceLock;
+use std::time::{Duration, Instant};
+
+use indicatif::{ProgressBar, ProgressStyle};
+
+/// How long the work goes on before the bar appears.
+const PATIENCE: Duration = Duration::from_millis(500);
+const STEPS: u64 = 1000;
+
+pub(super) struct Bar {
+    started: Instant,
+    enabled: bool,
+    bar: OnceLock<ProgressBar>,
+}
+
+impl Bar {
+    pub(super) fn new(quiet: bool) -> Self {
+        Self {
+            started: Instant::now(),
+            enabled: !quiet && std::io::stderr().is_terminal(),
+            bar: OnceLock::new(),
+        }
+    }
+
+    /// Shows how far the work is, from 0 to 1.
+    pub(super) fn set(&self, done: f64) {
+        if !self.enabled || self.started.elapsed() < PATIENCE {
+            return;
+        }
+        let bar = self.bar.get_or_init(|| {
+            let style = ProgressStyle::with_template("rendering {bar:32} {percent:>3} %  {eta} left");
+            ProgressBar::new(STEPS)
+                .with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+        });
+        // Bands finish in any order; the bar never runs backwards.
+        let position = (done * STEPS as f64) as u64;
+        bar.set_position(position.max(bar.position()));
+    }
+}
+
+impl Drop for Bar {
+    fn drop(&mut self) {
+        if let Some(bar) = self.bar.get() {
+            bar.finish_and_clear();
+        }
+    }
+}

@@ -1,0 +1,205 @@
+//! `spherule render`: from a file to an image.
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::time::{Duration, Instant};
+
+use serde::Serialize;
+
+use super::args::RenderArguments;
+use super::print;
+use super::progress::Bar;
+use crate::device::{Device, DeviceChoice};
+use crate::error::{Error, Result};
+use crate::film::compare::{Comparison, Tolerance};
+use crate::render::{Rendered, render};
+use crate::scene::Scene;
+
+/// What `--stats` writes.
+#[derive(Debug, Serialize)]
+struct Stats {
+    device: String,
+    backend: &'static str,
+    spheres: usize,
+    width: u32,
+    height: u32,
+    rays: u64,
+    seconds: Seconds,
+    mrays_per_s: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    depth_range: Option<(f32, f32)>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    check: Option<Check>,
+}
+
+#[derive(Debug, Serialize)]
+struct Seconds {
+    load: f64,
+    setup: f64,
+    trace: f64,
+    readback: f64,
+    encode: f64,
+    total: f64,
+}
+
+#[derive(Debug, Serialize)]
+struct Check {
+    against: String,
+    #[serde(flatten)]
+    comparison: Comparison,
+    passed: bool,
+}
+
+pub(super) fn run(arguments: &RenderArguments) -> Result<ExitCode> {
+    let started = Instant::now();
+    let say = |text: &str| {
+        if !arguments.quiet {
+            eprintln!("{text}");
+        }
+    };
+
+    let output = arguments
+        .output
+        .clone()
+        .unwrap_or_else(|| default_output(&arguments.input));
+    let mut scene = Scene::load(&arguments.input)?;
+    if let Some(size) = arguments.size {
+        (scene.width, scene.height) = (size.width, size.height);
+    }
+    let load = started.elapsed();
+
+    let opening = Instant::now();
+    let (device, why) = Device::open(&arguments.device)?;
+    let opening = opening.elapsed();
+    say(&format!("rendering on {} ({why})", device.name()));
+
+    let rendered = with_bar(arguments, &scene, &device)?;
+    let image = &rendered.image;
+    let encoding = Instant::now();
+    image.save(&output)?;
+    let encode = encoding.elapsed();
+    let total = started.elapsed();
+
+    if let Some((near, far)) = image.depth_range() {
+        say(&format!("depth from {near} (white) to {far} (black) scene units"));
+    }
+    say(&format!(
+        "wrote {}: {} × {} pixels, {} spheres, {}",
+        output.display(),
+        image.width(),
+        image.height(),
+        scene.world.spheres.len(),
+        human(total),
+    ));
+
+    let check = if arguments.check {
+        Some(check(arguments, &scene, &device, &rendered)?)
+    } else {
+        None
+    };
+    let passed = check.as_ref().is_none_or(|check| check.passed);
+    if let Some(path) = &arguments.stats {
+        let rays = u64::from(scene.width) * u64::from(scene.height);
+        let trace = rendered.timings.trace.as_secs_f64();
+        write_stats(
+            path,
+            &Stats {
+                device: device.name(),
+                backend: device.backend(),
+                spheres: scene.world.spheres.len(),
+                width: scene.width,
+                height: scene.height,
+                rays,
+                seconds: Seconds {
+                    load: load.as_secs_f64(),
+                    setup: (opening + rendered.timings.setup).as_secs_f64(),
+                    trace,
+                    readback: rendered.timings.readback.as_secs_f64(),
+                    encode: encode.as_secs_f64(),
+                    total: total.as_secs_f64(),
+                },
+                mrays_per_s: rays as f64 / trace.max(1e-9) * 1e-6,
+                depth_range: image.depth_range(),
+                check,
+            },
+        )?;
+    }
+    Ok(if passed {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::FAILURE
+    })
+}
+
+fn with_bar(arguments: &RenderArguments, scene: &Scene, device: &Device) -> Result<Rendered> {
+    let bar = Bar::new(arguments.quiet);
+    render(scene, arguments.shade.into(), device, &|done| bar.set(done))
+}
+
+/// Renders on the other path and compares.
+fn check(
+    arguments: &RenderArguments,
+    scene: &Scene,
+    device: &Device,
+    rendered: &Rendered,
+) -> Result<Check> {
+    let other = match device {
+        Device::Cpu => Device::open(&DeviceChoice::Gpu)?.0,
+        Device::Gpu(_) => Device::Cpu,
+    };
+    let again = with_bar(arguments, scene, &other)?;
+    let comparison = Comparison::of(&rendered.image, &again.image, Tolerance::default())
+        .ok_or_else(|| Error::Image {
+            path: PathBuf::new(),
+            reason: "the two paths made images of different sizes".into(),
+            help: "this is a mistake of spherule's; please report it".into(),
+        })?;
+    let passed = comparison.is_within();
+    if !arguments.quiet {
+        print(&format!(
+            "{}: against {}, largest difference {:.2}/255, mean {:.5}/255, {} of {} pixels off by more than {}/255 \
+             ({:.1} % may be)\n",
+            if passed { "check passed" } else { "CHECK FAILED" },
+            other.name(),
+            comparison.largest,
+            comparison.mean,
+            comparison.differing,
+            comparison.pixels,
+            comparison.tolerance.channel,
+            comparison.tolerance.share * 100.0,
+        ));
+    }
+    Ok(Check {
+        against: other.name(),
+        comparison,
+        passed,
+    })
+}
+
+fn write_stats(path: &Path, stats: &Stats) -> Result<()> {
+    let failed = |reason: String| Error::Image {
+        path: path.into(),
+        reason,
+        help: "check that the directory exists and may be written".into(),
+    };
+    let text = serde_json::to_string_pretty(stats).map_err(|error| failed(error.to_string()))? + "\n";
+    if path == Path::new("-") {
+        print(&text);
+        return Ok(());
+    }
+    std::fs::write(path, text).map_err(|error| failed(format!("cannot be written: {error}")))
+}
+
+/// The input's name with `.png`, in the current directory.
+fn default_output(input: &Path) -> PathBuf {
+    PathBuf::from(input.file_stem().unwrap_or(input.as_os_str())).with_extension("png")
+}
+
+fn human(duration: Duration) -> String {
+    let seconds = duration.as_secs_f64();
+    if seconds < 1.0 {
+        format!("{:.0} ms", seconds * 1e3)
+    } else {
+        format!("{seconds:.1} s")
+    }
+}

@@ -1,0 +1,205 @@
+//! Which adapters there are, and which one to use.
+
+use std::fmt;
+use std::str::FromStr;
+
+use serde::Serialize;
+
+use crate::error::{Error, Result};
+
+/// Which device a person wants.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum DeviceChoice {
+    /// A real GPU if there is one, else the CPU. Never a software adapter.
+    #[default]
+    Auto,
+    /// The best GPU adapter, a software one if there is no other.
+    Gpu,
+    /// The CPU, without touching any graphics driver.
+    Cpu,
+    /// The adapter whose name contains this text, whatever the case.
+    Named(String),
+}
+
+impl FromStr for DeviceChoice {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text.trim().to_lowercase().as_str() {
+            "" => Err("give auto, gpu, cpu, or a part of an adapter's name".into()),
+            "auto" => Ok(Self::Auto),
+            "gpu" => Ok(Self::Gpu),
+            "cpu" => Ok(Self::Cpu),
+            _ => Ok(Self::Named(text.trim().into())),
+        }
+    }
+}
+
+impl fmt::Display for DeviceChoice {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Auto => f.write_str("auto"),
+            Self::Gpu => f.write_str("gpu"),
+            Self::Cpu => f.write_str("cpu"),
+            Self::Named(name) => f.write_str(name),
+        }
+    }
+}
+
+/// What an adapter is and offers.
+#[derive(Clone, Debug, Serialize)]
+pub struct AdapterReport {
+    /// The adapter's name, as its driver gives it.
+    pub name: String,
+    /// `discrete`, `integrated`, `virtual`, `software` or `other`.
+    pub kind: &'static str,
+    /// The graphics interface: `vulkan`, `metal` or `dx12`.
+    pub api: String,
+    /// The driver's name and version.
+    pub driver: String,
+    /// Whether SPIR-V reaches the driver as it is, rather than through naga.
+    pub passthrough: bool,
+    /// Whether kernels may use 64-bit floats.
+    pub f64: bool,
+    /// Whether GPU time can be measured.
+    pub timestamps: bool,
+    /// The largest buffer, in bytes.
+    pub max_buffer: u64,
+    /// The largest part of a buffer that a kernel sees at once, in bytes.
+    pub max_binding: u64,
+    /// The most threads in a workgroup.
+    pub max_workgroup: u32,
+    /// Whether `auto` may choose it.
+    pub real_gpu: bool,
+}
+
+impl AdapterReport {
+    fn of(adapter: &wgpu::Adapter) -> Self {
+        let info = adapter.get_info();
+        let limits = adapter.limits();
+        let features = adapter.features();
+        Self {
+            kind: match info.device_type {
+                wgpu::DeviceType::DiscreteGpu => "discrete",
+                wgpu::DeviceType::IntegratedGpu => "integrated",
+                wgpu::DeviceType::VirtualGpu => "virtual",
+                wgpu::DeviceType::Cpu => "software",
+                wgpu::DeviceType::Other => "other",
+            },
+            api: info.backend.to_string().to_lowercase(),
+            driver: format!("{} {}", info.driver, info.driver_info).trim().into(),
+            passthrough: takes_spirv(adapter),
+            f64: features.contains(wgpu::Features::SHADER_F64),
+            timestamps: features.contains(wgpu::Features::TIMESTAMP_QUERY),
+            max_buffer: limits.max_buffer_size,
+            max_binding: limits.max_storage_buffer_binding_size,
+            max_workgroup: limits.max_compute_invocations_per_workgroup,
+            real_gpu: rank(&info) < SOFTWARE_RANK,
+            name: info.name,
+        }
+    }
+}
+
+/// Whether the adapter's driver takes SPIR-V as it is.
+pub(super) fn takes_spirv(adapter: &wgpu::Adapter) -> bool {
+    adapter.get_info().backend == wgpu::Backend::Vulkan
+        && adapter
+            .features()
+            .contains(wgpu::Features::PASSTHROUGH_SHADERS)
+}
+
+const SOFTWARE_RANK: u32 = 3;
+
+/// The order of preference, the best first.
+fn rank(info: &wgpu::AdapterInfo) -> u32 {
+    match info.device_type {
+        wgpu::DeviceType::DiscreteGpu => 0,
+        wgpu::DeviceType::IntegratedGpu => 1,
+        wgpu::DeviceType::VirtualGpu => 2,
+        wgpu::DeviceType::Cpu | wgpu::DeviceType::Other => SOFTWARE_RANK,
+    }
+}
+
+/// An instance with the graphics interfaces of this system.
+#[must_use]
+pub fn instance() -> wgpu::Instance {
+    // No VALIDATION_INDIRECT_CALL: spherule dispatches nothing indirectly, and the check would
+    // cap buffers at 4 GiB. `with_env` lets WGPU_VALIDATION and WGPU_DEBUG turn checks on.
+    let flags = wgpu::InstanceFlags::empty().with_env();
+    wgpu::Instance::new(wgpu::InstanceDescriptor {
+        backends: wgpu::Backends::VULKAN | wgpu::Backends::METAL | wgpu::Backends::DX12,
+        flags,
+        ..wgpu::InstanceDescriptor::new_without_display_handle()
+    })
+}
+
+/// Every adapter of this system, the preferred ones first.
+#[must_use]
+pub fn adapters(instance: &wgpu::Instance) -> Vec<wgpu::Adapter> {
+    let mut adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::all()));
+    adapters.sort_by_key(|adapter| rank(&adapter.get_info()));
+    adapters
+}
+
+/// What every adapter of this system is and offers, the preferred ones first.
+#[must_use]
+pub fn list_adapters() -> Vec<AdapterReport> {
+    adapters(&instance())
+        .iter()
+        .map(AdapterReport::of)
+        .collect()
+}
+
+/// The adapter that `choice` means, or `None` for the CPU; with the reason in a few words.
+///
+/// # Errors
+///
+/// [`Error::NoAdapter`] if a GPU was asked for and there is none like it.
+pub(super) fn choose(choice: &DeviceChoice) -> Result<(Option<wgpu::Adapter>, String)> {
+    if *choice == DeviceChoice::Cpu {
+        return Ok((None, "asked for".into()));
+    }
+    let mut adapters = adapters(&instance());
+    let position = match choice {
+        DeviceChoice::Named(part) => {
+            let part = part.to_lowercase();
+            adapters
+                .iter()
+                .position(|adapter| adapter.get_info().name.to_lowercase().contains(&part))
+        }
+        DeviceChoice::Auto => adapters
+            .iter()
+            .position(|adapter| rank(&adapter.get_info()) < SOFTWARE_RANK),
+        DeviceChoice::Gpu | DeviceChoice::Cpu => (!adapters.is_empty()).then_some(0),
+    };
+    match position {
+        Some(position) => {
+            let reason = match choice {
+                DeviceChoice::Auto => "the first real GPU",
+                DeviceChoice::Gpu if rank(&adapters[position].get_info()) >= SOFTWARE_RANK => {
+                    "asked for; a software adapter, there is no real GPU"
+                }
+                _ => "asked for",
+            };
+            Ok((Some(adapters.swap_remove(position)), reason.into()))
+        }
+        None if *choice == DeviceChoice::Auto => Ok((None, "there is no real GPU".into())),
+        None => {
+            let names: Vec<String> = adapters
+                .iter()
+                .map(|adapter| adapter.get_info().name)
+                .collect();
+            Err(Error::NoAdapter {
+                wanted: match choice {
+                    DeviceChoice::Named(part) => format!("has a name that contains \"{part}\""),
+                    _ => "was found".into(),
+                },
+                found: if names.is_empty() {
+                    "this system has no graphics driver that wgpu can use".into()
+                } else {
+                    format!("there is {}", names.join(", "))
+                },
+            })
+        }
+    }
+}

@@ -1,0 +1,51 @@
+//! [`Buffer`]: device memory that holds elements of one type.
+
+use std::marker::PhantomData;
+
+use bytemuck::Pod;
+
+/// Device memory for `len` elements of `T`.
+#[derive(Debug)]
+pub struct Buffer<T> {
+    pub(super) raw: wgpu::Buffer,
+    pub(super) label: String,
+    len: usize,
+    of: PhantomData<T>,
+}
+
+impl<T: Pod> Buffer<T> {
+    pub(super) fn from_raw(raw: wgpu::Buffer, label: &str, len: usize) -> Self {
+        Self {
+            raw,
+            label: label.into(),
+            len,
+            of: PhantomData,
+        }
+    }
+
+    /// How many elements it holds.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    /// Whether it holds none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+
+    /// The buffer as a kernel's argument.
+    #[must_use]
+    pub fn binding(&self) -> Binding<'_> {
+        Binding {
+            resource: self.raw.as_entire_binding(),
+        }
+    }
+}
+
+/// A buffer as a kernel's argument.
+#[derive(Clone, Debug)]
+pub struct Binding<'a> {
+    pub(super) resource: wgpu::BindingResource<'a>,
+}

@@ -1,0 +1,608 @@
+//! [`Gpu`]: a device that runs kernels, with every failure an [`Error`].
+//!
+//! ```no_run
+//! use spherule::device::{Access, DeviceChoice, Gpu, Module};
+//! # fn main() -> spherule::Result<()> {
+//! # let spirv: &[u8] = &[];
+//! let gpu = Gpu::open(&DeviceChoice::Gpu)?;
+//! let module = Module::from_bytes("doubler", spirv)?;
+//! let kernel = gpu.kernel(&module, "double_all", &[Access::ReadWrite])?;
+//! let numbers = gpu.upload("numbers", &[1.0_f32, 2.0, 3.0])?;
+//! gpu.launch(&kernel, &[numbers.binding()], [1, 1, 1])?;
+//! assert_eq!(gpu.read(&numbers)?, [2.0, 4.0, 6.0]);
+//! # Ok(()) }
+//! ```
+
+use std::borrow::Cow;
+use std::sync::mpsc;
+use std::time::{Duration, Instant};
+
+use bytemuck::Pod;
+
+use super::adapter::{self, DeviceChoice};
+use super::buffer::{Binding, Buffer};
+use super::errors::{Watch, one_line};
+use super::spirv::Module;
+use super::timer::Timer;
+use crate::error::{Error, Result};
+
+/// How a device is opened; for tests and for odd drivers.
+#[derive(Clone, Debug)]
+pub struct GpuOptions {
+    /// The limits to ask for; `None` asks for all that the adapter has.
+    pub limits: Option<wgpu::Limits>,
+    /// Hand kernels to naga even where the driver would take SPIR-V as it is.
+    pub through_naga: bool,
+    /// How long a single launch may take before it counts as hung.
+    pub timeout: Duration,
+}
+
+impl Default for GpuOptions {
+    fn default() -> Self {
+        Self {
+            limits: None,
+            through_naga: false,
+            timeout: Duration::from_secs(120),
+        }
+    }
+}
+
+/// How a kernel uses a buffer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Access {
+    /// A small constant, in uniform memory.
+    Uniform,
+    /// Storage that the kernel only reads.
+    Read,
+    /// Storage that the kernel reads and writes.
+    ReadWrite,
+}
+
+/// An entry point, compiled by the driver.
+#[derive(Debug)]
+pub struct Kernel {
+    name: String,
+    pipeline: wgpu::ComputePipeline,
+    layout: wgpu::BindGroupLayout,
+    workgroup_size: [u32; 3],
+}
+
+impl Kernel {
+    /// Threads in a workgroup along x, y and z.
+    #[must_use]
+    pub fn workgroup_size(&self) -> [u32; 3] {
+        self.workgroup_size
+    }
+
+    /// The number of workgroups that cover `threads` threads along x, y and z.
+    #[must_use]
+    pub fn workgroups_for(&self, threads: [u32; 3]) -> [u32; 3] {
+        [0, 1, 2].map(|axis| threads[axis].div_ceil(self.workgroup_size[axis]))
+    }
+}
+
+/// How long a launch took.
+#[derive(Clone, Copy, Debug)]
+pub struct LaunchTime {
+    /// On the device, between timestamps; `None` where the device has none.
+    pub device: Option<Duration>,
+    /// On the host, from submitting to knowing that it is done.
+    pub host: Duration,
+}
+
+impl LaunchTime {
+    /// The device's own time where it is known, else the host's.
+    #[must_use]
+    pub fn best(&self) -> Duration {
+        self.device.unwrap_or(self.host)
+    }
+}
+
+/// A GPU, or a software stand-in for one, ready to run kernels.
+#[derive(Debug)]
+pub struct Gpu {
+    device: wgpu::Device,
+    queue: wgpu::Queue,
+    name: String,
+    passthrough: bool,
+    timeout: Duration,
+    timer: Option<Timer>,
+    watch: Watch,
+}
+
+impl Gpu {
+    /// Opens the adapter that `choice` means.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::NoAdapter`] if there is none ([`DeviceChoice::Auto`] takes no software adapter,
+    /// [`DeviceChoice::Cpu`] no adapter at all), [`Error::DeviceRefused`] if it does not open.
+    pub fn open(choice: &DeviceChoice) -> Result<Self> {
+        let (adapter, _) = adapter::choose(choice)?;
+        let adapter = adapter.ok_or_else(|| Error::NoAdapter {
+            wanted: format!("follows from the choice \"{choice}\""),
+            found: "it means the CPU here".into(),
+        })?;
+        Self::from_adapter(&adapter, GpuOptions::default())
+    }
+
+    /// Opens this adapter.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::DeviceRefused`] with the driver's reason.
+    pub fn from_adapter(adapter: &wgpu::Adapter, options: GpuOptions) -> Result<Self> {
+        let name = adapter.get_info().name;
+        let passthrough = adapter::takes_spirv(adapter) && !options.through_naga;
+        let mut wanted = wgpu::Features::SHADER_F64 | wgpu::Features::TIMESTAMP_QUERY;
+        if passthrough {
+            wanted |= wgpu::Features::PASSTHROUGH_SHADERS;
+        }
+        let features = wanted & adapter.features();
+        let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
+            label: Some("spherule"),
+            required_features: features,
+            required_limits: options.limits.unwrap_or_else(|| adapter.limits()),
+            ..Default::default()
+        }))
+        .map_err(|error| Error::DeviceRefused {
+            adapter: name.clone(),
+            reason: one_line(&error),
+        })?;
+        let watch = Watch::over(&device, &name);
+        let timer = if features.contains(wgpu::Features::TIMESTAMP_QUERY) {
+            Some(watch.checked(&device, "making timestamp queries", || {
+                Timer::new(&device, &queue)
+            })?)
+        } else {
+            None
+        };
+        Ok(Self {
+            device,
+            queue,
+            name,
+            passthrough,
+            timeout: options.timeout,
+            timer,
+            watch,
+        })
+    }
+
+    /// The adapter's name.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Whether SPIR-V reaches the driver as it is, rather than through naga.
+    #[must_use]
+    pub fn passes_spirv_through(&self) -> bool {
+        self.passthrough
+    }
+
+    /// What the device can do, as it was opened.
+    #[must_use]
+    pub fn limits(&self) -> wgpu::Limits {
+        self.device.limits()
+    }
+
+    /// Gives the device up: every later call fails with [`Error::DeviceLost`].
+    pub fn destroy(&self) {
+        self.device.destroy();
+        // The callback that records the loss runs inside a poll.
+        let _ = self.device.poll(wgpu::PollType::Poll);
+    }
+
+    /// Compiles an entry point of `module`; `bindings` says how it uses descriptor set 0, from
+    /// binding 0 upwards.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::KernelInvalid`] if there is no such entry point, the device lacks what the
+    /// module needs, or the driver does not take it; [`Error::LaunchLimits`] if a workgroup has
+    /// more threads than the device can run.
+    pub fn kernel(&self, module: &Module, entry_point: &str, bindings: &[Access]) -> Result<Kernel> {
+        let invalid = |reason: String| Error::KernelInvalid {
+            kernel: format!("{}/{entry_point}", module.name()),
+            reason,
+        };
+        let entry = module
+            .entry_points()
+            .iter()
+            .find(|entry| entry.name == entry_point)
+            .ok_or_else(|| {
+                let names: Vec<&str> = module
+                    .entry_points()
+                    .iter()
+                    .map(|entry| entry.name.as_str())
+                    .collect();
+                invalid(format!("the module has no such entry point, it has {}", names.join(", ")))
+            })?;
+        if module.needs_f64() && !self.device.features().contains(wgpu::Features::SHADER_F64) {
+            return Err(invalid(format!("it needs 64-bit floats, which {} lacks", self.name)));
+        }
+        self.check_workgroup(entry_point, entry.workgroup_size)?;
+
+        let during = format!("compiling the kernel {entry_point}");
+        let made = self.watch.checked(&self.device, &during, || {
+            let shader = self.shader_module(module);
+            let layout = self.bind_group_layout(entry_point, bindings);
+            let pipeline_layout = self
+                .device
+                .create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+                    label: Some(entry_point),
+                    bind_group_layouts: &[Some(&layout)],
+                    immediate_size: 0,
+                });
+            let pipeline = self
+                .device
+                .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                    label: Some(entry_point),
+                    layout: Some(&pipeline_layout),
+                    module: &shader,
+                    entry_point: Some(entry_point),
+                    compilation_options: wgpu::PipelineCompilationOptions {
+                        constants: &[],
+                        zero_initialize_workgroup_memory: false,
+                    },
+                    cache: None,
+                });
+            (pipeline, layout)
+        });
+        let (pipeline, layout) = made.map_err(|error| match error {
+            Error::Validation { reason, .. } => invalid(reason),
+            other => other,
+        })?;
+        Ok(Kernel {
+            name: entry_point.into(),
+            pipeline,
+            layout,
+            workgroup_size: entry.workgroup_size,
+        })
+    }
+
+    fn shader_module(&self, module: &Module) -> wgpu::ShaderModule {
+        if !self.passthrough {
+            return self.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+                label: Some(module.name()),
+                source: wgpu::ShaderSource::SpirV(Cow::Borrowed(module.words())),
+            });
+        }
+        let entry_points = module
+            .entry_points()
+            .iter()
+            .map(|entry| wgpu::PassthroughShaderEntryPoint {
+                name: Cow::Borrowed(entry.name.as_str()),
+                workgroup_size: entry.workgroup_size.into(),
+            })
+            .collect();
+        // SAFETY: the words reach the driver unseen by wgpu. `Module` has checked their
+        // structure; that they are valid Vulkan SPIR-V is rust-gpu's promise, which runs
+        // spirv-val on all that it emits.
+        unsafe {
+            self.device
+                .create_shader_module_passthrough(wgpu::ShaderModuleDescriptorPassthrough {
+                    label: Some(module.name()),
+                    entry_points,
+                    spirv: Some(Cow::Borrowed(module.words())),
+                    ..Default::default()
+                })
+        }
+    }
+
+    fn bind_group_layout(&self, label: &str, bindings: &[Access]) -> wgpu::BindGroupLayout {
+        let entries: Vec<wgpu::BindGroupLayoutEntry> = bindings
+            .iter()
+            .zip(0..)
+            .map(|(access, binding)| wgpu::BindGroupLayoutEntry {
+                binding,
+                visibility: wgpu::ShaderStages::COMPUTE,
+                ty: wgpu::BindingType::Buffer {
+                    ty: match access {
+                        Access::Uniform => wgpu::BufferBindingType::Uniform,
+                        Access::Read => wgpu::BufferBindingType::Storage { read_only: true },
+                        Access::ReadWrite => wgpu::BufferBindingType::Storage { read_only: false },
+                    },
+                    has_dynamic_offset: false,
+                    min_binding_size: None,
+                },
+                count: None,
+            })
+            .collect();
+        self.device
+            .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+                label: Some(label),
+                entries: &entries,
+            })
+    }
+
+    /// Uploads `data` into storage. An empty slice becomes one element of zeros, because there
+    /// are no empty buffers.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::BufferTooLarge`], [`Error::OutOfMemory`], [`Error::DeviceLost`].
+    pub fn upload<T: Pod>(&self, label: &str, data: &[T]) -> Result<Buffer<T>> {
+        self.filled(label, data, wgpu::BufferUsages::STORAGE)
+    }
+
+    /// Uploads one value into uniform memory; [`Gpu::update`] changes it.
+    ///
+    /// # Errors
+    ///
+    /// As [`Gpu::upload`].
+    pub fn upload_uniform<T: Pod>(&self, label: &str, value: &T) -> Result<Buffer<T>> {
+        self.filled(label, std::slice::from_ref(value), wgpu::BufferUsages::UNIFORM)
+    }
+
+    /// Overwrites a uniform.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Validation`], [`Error::DeviceLost`].
+    pub fn update<T: Pod>(&self, buffer: &Buffer<T>, value: &T) -> Result<()> {
+        let during = format!("updating {}", buffer.label);
+        self.watch.checked(&self.device, &during, || {
+            self.queue
+                .write_buffer(&buffer.raw, 0, bytemuck::bytes_of(value));
+        })
+    }
+
+    /// Storage for `len` elements, all zeros.
+    ///
+    /// # Errors
+    ///
+    /// As [`Gpu::upload`].
+    pub fn zeroed<T: Pod>(&self, label: &str, len: usize) -> Result<Buffer<T>> {
+        let usage = wgpu::BufferUsages::STORAGE;
+        let size = self.storage_size::<T>(label, len, usage)?;
+        let raw = self
+            .watch
+            .checked(&self.device, &format!("allocating {label}"), || {
+                self.create_buffer(label, size, usage, false)
+            })?;
+        Ok(Buffer::from_raw(raw, label, len))
+    }
+
+    /// Makes every byte of `buffer` zero again.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::DeviceLost`].
+    pub fn clear<T: Pod>(&self, buffer: &Buffer<T>) -> Result<()> {
+        let during = format!("clearing {}", buffer.label);
+        self.watch.checked(&self.device, &during, || {
+            let mut encoder = self.encoder("clear");
+            encoder.clear_buffer(&buffer.raw, 0, None);
+            self.queue.submit([encoder.finish()]);
+        })
+    }
+
+    fn filled<T: Pod>(
+        &self,
+        label: &str,
+        data: &[T],
+        usage: wgpu::BufferUsages,
+    ) -> Result<Buffer<T>> {
+        let zero = [T::zeroed()];
+        let len = data.len();
+        let data = if data.is_empty() { &zero } else { data };
+        let size = self.storage_size::<T>(label, data.len(), usage)?;
+        let during = format!("uploading {label}");
+        let raw = self.watch.checked(&self.device, &during, || {
+            let raw = self.create_buffer(label, size, usage, true);
+            // Where the allocation failed there is nothing to map, and the scope says why.
+            if let Ok(mut mapped) = raw.get_mapped_range_mut(..) {
+                let bytes: &[u8] = bytemuck::cast_slice(data);
+                mapped.slice(..bytes.len()).copy_from_slice(bytes);
+                drop(mapped);
+                raw.unmap();
+            }
+            raw
+        })?;
+        Ok(Buffer::from_raw(raw, label, len))
+    }
+
+    fn create_buffer(
+        &self,
+        label: &str,
+        size: u64,
+        usage: wgpu::BufferUsages,
+        mapped_at_creation: bool,
+    ) -> wgpu::Buffer {
+        self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some(label),
+            size,
+            usage: usage | wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation,
+        })
+    }
+
+    /// The bytes that `len` elements take, or an error where that is more than the device has.
+    fn storage_size<T>(&self, label: &str, len: usize, usage: wgpu::BufferUsages) -> Result<u64> {
+        let limits = self.device.limits();
+        let needed = (size_of::<T>() as u64)
+            .saturating_mul(len.max(1) as u64)
+            .next_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT);
+        let binding = if usage.contains(wgpu::BufferUsages::UNIFORM) {
+            limits.max_uniform_buffer_binding_size
+        } else {
+            limits.max_storage_buffer_binding_size
+        };
+        let limit = limits.max_buffer_size.min(binding);
+        if needed > limit {
+            return Err(Error::BufferTooLarge {
+                label: label.into(),
+                needed,
+                limit,
+                device: self.name.clone(),
+            });
+        }
+        Ok(needed)
+    }
+
+    /// Runs `kernel` with these buffers, in the order of its bindings, and waits for it.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::LaunchLimits`] if there are more workgroups than the device can count;
+    /// [`Error::Validation`] if the buffers do not fit the kernel; [`Error::Timeout`] and
+    /// [`Error::DeviceLost`] as the launch goes.
+    pub fn launch(
+        &self,
+        kernel: &Kernel,
+        bindings: &[Binding<'_>],
+        workgroups: [u32; 3],
+    ) -> Result<LaunchTime> {
+        let limit = self.device.limits().max_compute_workgroups_per_dimension;
+        if let Some(asked) = workgroups.iter().find(|count| **count > limit) {
+            return Err(self.over_limit(&kernel.name, "the number of workgroups", *asked, limit));
+        }
+        let during = format!("running the kernel {}", kernel.name);
+        let started = Instant::now();
+        let (submission, mapped) = self.watch.checked(&self.device, &during, || {
+            let group = self.bind_group(kernel, bindings);
+            let mut encoder = self.encoder(&kernel.name);
+            {
+                let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+                    label: Some(&kernel.name),
+                    timestamp_writes: self.timer.as_ref().map(Timer::writes),
+                });
+                pass.set_pipeline(&kernel.pipeline);
+                pass.set_bind_group(0, &group, &[]);
+                let [x, y, z] = workgroups;
+                pass.dispatch_workgroups(x, y, z);
+            }
+            if let Some(timer) = &self.timer {
+                timer.resolve(&mut encoder);
+            }
+            let submission = self.queue.submit([encoder.finish()]);
+            (submission, self.timer.as_ref().map(Timer::map))
+        })?;
+        self.watch
+            .wait(&self.device, submission, self.timeout, &during)?;
+        let host = started.elapsed();
+        let device = match (&self.timer, mapped) {
+            (Some(timer), Some(mapped)) => timer.elapsed(&mapped),
+            _ => None,
+        };
+        Ok(LaunchTime { device, host })
+    }
+
+    fn bind_group(&self, kernel: &Kernel, bindings: &[Binding<'_>]) -> wgpu::BindGroup {
+        let entries: Vec<wgpu::BindGroupEntry<'_>> = bindings
+            .iter()
+            .zip(0..)
+            .map(|(binding, index)| wgpu::BindGroupEntry {
+                binding: index,
+                resource: binding.resource.clone(),
+            })
+            .collect();
+        self.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some(&kernel.name),
+            layout: &kernel.layout,
+            entries: &entries,
+        })
+    }
+
+    /// Copies all of `buffer` back to the host.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Readback`] if it cannot be mapped, and the errors of [`Gpu::launch`].
+    pub fn read<T: Pod>(&self, buffer: &Buffer<T>) -> Result<Vec<T>> {
+        self.read_first(buffer, buffer.len())
+    }
+
+    /// Copies the first `len` elements of `buffer` back to the host; all of them if it holds
+    /// fewer.
+    ///
+    /// # Errors
+    ///
+    /// As [`Gpu::read`].
+    pub fn read_first<T: Pod>(&self, buffer: &Buffer<T>, len: usize) -> Result<Vec<T>> {
+        let len = len.min(buffer.len());
+        if len == 0 {
+            return Ok(Vec::new());
+        }
+        let failed = |reason: String| Error::Readback {
+            kernel: buffer.label.clone(),
+            reason,
+        };
+        let bytes = (len * size_of::<T>()) as u64;
+        let padded = bytes.next_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT);
+        let during = format!("reading {} back", buffer.label);
+        let (submission, staging, mapped) = self.watch.checked(&self.device, &during, || {
+            let staging = self.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("readback"),
+                size: padded,
+                usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+                mapped_at_creation: false,
+            });
+            let mut encoder = self.encoder("readback");
+            encoder.copy_buffer_to_buffer(&buffer.raw, 0, &staging, 0, padded);
+            let submission = self.queue.submit([encoder.finish()]);
+            let mapped = map(&staging);
+            (submission, staging, mapped)
+        })?;
+        self.watch
+            .wait(&self.device, submission, self.timeout, &during)?;
+        match mapped.try_recv() {
+            Ok(Ok(())) => {}
+            Ok(Err(error)) => return Err(failed(error.to_string())),
+            Err(_) => return Err(failed("the mapping did not finish with the copy".into())),
+        }
+        let view = staging
+            .get_mapped_range(..)
+            .map_err(|error| failed(error.to_string()))?;
+        let mut elements = vec![T::zeroed(); len];
+        bytemuck::cast_slice_mut::<T, u8>(&mut elements).copy_from_slice(&view[..bytes as usize]);
+        Ok(elements)
+    }
+
+    fn encoder(&self, label: &str) -> wgpu::CommandEncoder {
+        self.device
+            .create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some(label) })
+    }
+
+    fn check_workgroup(&self, kernel: &str, size: [u32; 3]) -> Result<()> {
+        let limits = self.device.limits();
+        let threads = size.iter().fold(1_u32, |product, side| product.saturating_mul(*side));
+        let checks = [
+            ("the workgroup's size along x", size[0], limits.max_compute_workgroup_size_x),
+            ("the workgroup's size along y", size[1], limits.max_compute_workgroup_size_y),
+            ("the workgroup's size along z", size[2], limits.max_compute_workgroup_size_z),
+            (
+                "the number of threads in a workgroup",
+                threads,
+                limits.max_compute_invocations_per_workgroup,
+            ),
+        ];
+        match checks.iter().find(|(_, asked, limit)| asked > limit) {
+            Some((what, asked, limit)) => Err(self.over_limit(kernel, what, *asked, *limit)),
+            None => Ok(()),
+        }
+    }
+
+    fn over_limit(&self, kernel: &str, what: &'static str, asked: u32, limit: u32) -> Error {
+        Error::LaunchLimits {
+            kernel: kernel.into(),
+            device: self.name.clone(),
+            what,
+            asked: asked.into(),
+            limit: limit.into(),
+        }
+    }
+}
+
+/// Starts mapping a whole buffer for reading; the channel tells when it is mapped.
+pub(super) fn map(
+    buffer: &wgpu::Buffer,
+) -> mpsc::Receiver<std::result::Result<(), wgpu::BufferAsyncError>> {
+    let (sender, receiver) = mpsc::channel();
+    buffer.map_async(wgpu::MapMode::Read, .., move |result| {
+        // The receiver is gone only where waiting failed, and then nobody wants to know.
+        let _ = sender.send(result);
+    });
+    receiver
+}

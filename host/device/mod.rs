@@ -1,0 +1,71 @@
+//! Devices: which there are, and running kernels on them.
+//!
+//! | module | holds |
+//! | --- | --- |
+//! | [`adapter`] | the list of adapters, and the choice between them |
+//! | [`gpu`] | [`Gpu`]: buffers, kernels and launches on one adapter |
+//! | [`spirv`] | [`Module`]: SPIR-V, checked and specialised |
+//! | [`buffer`] | [`Buffer`]: device memory |
+//!
+//! Nothing in here knows of scenes or images. A program with kernels of its own uses it as it
+//! is: see `examples/own-kernel`.
+
+pub mod adapter;
+pub mod buffer;
+mod errors;
+pub mod gpu;
+pub mod spirv;
+mod timer;
+
+use crate::error::Result;
+pub use adapter::{AdapterReport, DeviceChoice, list_adapters};
+pub use buffer::{Binding, Buffer};
+pub use errors::is_waiting;
+pub use gpu::{Access, Gpu, GpuOptions, Kernel, LaunchTime};
+pub use spirv::Module;
+
+/// What renders: the CPU, or a GPU.
+#[derive(Debug)]
+pub enum Device {
+    /// The CPU, on every thread of rayon's pool.
+    Cpu,
+    /// A GPU, or a software adapter.
+    Gpu(Box<Gpu>),
+}
+
+impl Device {
+    /// Opens what `choice` means; also says why it was chosen, in a few words.
+    ///
+    /// # Errors
+    ///
+    /// The errors of [`Gpu::open`], where a GPU was asked for.
+    pub fn open(choice: &DeviceChoice) -> Result<(Self, String)> {
+        let (adapter, reason) = adapter::choose(choice)?;
+        match adapter {
+            None => Ok((Self::Cpu, reason)),
+            Some(adapter) => {
+                let gpu = Gpu::from_adapter(&adapter, GpuOptions::default())?;
+                Ok((Self::Gpu(Box::new(gpu)), reason))
+            }
+        }
+    }
+
+    /// The device's name for a person.
+    #[must_use]
+    pub fn name(&self) -> String {
+        match self {
+            Self::Cpu => format!("CPU, {} threads", rayon::current_num_threads()),
+            Self::Gpu(gpu) => gpu.name().into(),
+        }
+    }
+
+    /// `cpu` or `gpu`.
+    #[must_use]
+    pub fn backend(&self) -> &'static str {
+        match self {
+            Self::Cpu => "cpu",
+            Self::Gpu(_) => "gpu",
+        }
+    }
+}
+

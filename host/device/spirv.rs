@@ -1,0 +1,218 @@
+//! [`Module`]: SPIR-V words, checked for structure, and specialised before a driver sees them.
+//!
+//! A driver may crash on words that are not a module, and wgpu does not look at what it passes
+//! through, so the structure is checked here: the header, the length of each instruction, and
+//! what the host relies on (entry points, workgroup sizes, specialisation constants).
+
+use crate::error::{Error, Result};
+
+const MAGIC: u32 = 0x0723_0203;
+const HEADER_WORDS: usize = 5;
+
+/// Opcodes, storage classes and decorations from the SPIR-V specification.
+mod op {
+    pub(super) const ENTRY_POINT: u32 = 15;
+    pub(super) const EXECUTION_MODE: u32 = 16;
+    pub(super) const CAPABILITY: u32 = 17;
+    pub(super) const SPEC_CONSTANT: u32 = 50;
+    pub(super) const DECORATE: u32 = 71;
+    pub(super) const DECORATION_SPEC_ID: u32 = 1;
+    pub(super) const MODE_LOCAL_SIZE: u32 = 17;
+    pub(super) const MODEL_GL_COMPUTE: u32 = 5;
+    pub(super) const CAPABILITY_FLOAT64: u32 = 10;
+}
+
+/// A compute entry point of a module.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct EntryPoint {
+    /// Its name.
+    pub name: String,
+    /// Threads in a workgroup along x, y and z.
+    pub workgroup_size: [u32; 3],
+}
+
+/// A SPIR-V module whose structure has been checked.
+#[derive(Clone, Debug)]
+pub struct Module {
+    name: String,
+    words: Vec<u32>,
+    entry_points: Vec<EntryPoint>,
+    needs_f64: bool,
+}
+
+impl Module {
+    /// Checks `bytes`, a SPIR-V binary in either byte order; `name` is for messages.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::KernelInvalid`] if the bytes are not a module with a compute entry point.
+    pub fn from_bytes(name: &str, bytes: &[u8]) -> Result<Self> {
+        let invalid = |reason: String| Error::KernelInvalid {
+            kernel: name.into(),
+            reason,
+        };
+        if bytes.len() % 4 != 0 || bytes.len() < 4 * HEADER_WORDS {
+            return Err(invalid(format!(
+                "{} bytes are not a whole number of 32-bit words with a header",
+                bytes.len()
+            )));
+        }
+        let mut words: Vec<u32> = bytes
+            .chunks_exact(4)
+            .map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]]))
+            .collect();
+        if words[0] == MAGIC.swap_bytes() {
+            words.iter_mut().for_each(|word| *word = word.swap_bytes());
+        }
+        if words[0] != MAGIC {
+            return Err(invalid(format!(
+                "it starts with {:#010x}, not with SPIR-V's {MAGIC:#010x}",
+                words[0]
+            )));
+        }
+
+        let mut entries: Vec<(u32, EntryPoint)> = Vec::new();
+        let mut needs_f64 = false;
+        for instruction in Instructions::of(&words) {
+            let (at, opcode, operands) =
+                instruction.map_err(|at| invalid(format!("the instruction at word {at} does not fit the module")))?;
+            match (opcode, operands) {
+                (op::CAPABILITY, [op::CAPABILITY_FLOAT64]) => needs_f64 = true,
+                (op::ENTRY_POINT, [op::MODEL_GL_COMPUTE, function, name @ ..]) => {
+                    let name = literal_string(name)
+                        .ok_or_else(|| invalid(format!("the entry point at word {at} has no name")))?;
+                    entries.push((
+                        *function,
+                        EntryPoint {
+                            name,
+                            workgroup_size: [0; 3],
+                        },
+                    ));
+                }
+                (op::EXECUTION_MODE, [function, op::MODE_LOCAL_SIZE, x, y, z]) => {
+                    for (id, entry) in &mut entries {
+                        if id == function {
+                            entry.workgroup_size = [*x, *y, *z];
+                        }
+                    }
+                }
+                _ => {}
+            }
+        }
+        let entry_points: Vec<EntryPoint> = entries.into_iter().map(|(_, entry)| entry).collect();
+        if entry_points.is_empty() {
+            return Err(invalid("it has no compute entry point".into()));
+        }
+        if let Some(entry) = entry_points
+            .iter()
+            .find(|entry| entry.workgroup_size.contains(&0))
+        {
+            return Err(invalid(format!("its entry point {} has no workgroup size", entry.name)));
+        }
+        Ok(Self {
+            name: name.into(),
+            words,
+            entry_points,
+            needs_f64,
+        })
+    }
+
+    /// The name given for messages.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The words, in this machine's byte order.
+    #[must_use]
+    pub fn words(&self) -> &[u32] {
+        &self.words
+    }
+
+    /// The compute entry points.
+    #[must_use]
+    pub fn entry_points(&self) -> &[EntryPoint] {
+        &self.entry_points
+    }
+
+    /// Whether the module declares the capability `Float64`.
+    #[must_use]
+    pub fn needs_f64(&self) -> bool {
+        self.needs_f64
+    }
+
+    /// The module with the 32-bit specialisation constant `id` fixed to `value`, so that the
+    /// driver folds it and drops what depends on its other values.
+    ///
+    /// The constant's default is patched in the words, because wgpu hands modules to Vulkan
+    /// without any specialisation of its own when it passes them through.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::KernelInvalid`] if the module has no such constant.
+    pub fn specialise(mut self, id: u32, value: u32) -> Result<Self> {
+        let mut target = None;
+        let mut position = None;
+        for (at, opcode, operands) in Instructions::of(&self.words).flatten() {
+            match (opcode, operands) {
+                (op::DECORATE, [result, op::DECORATION_SPEC_ID, spec_id]) if *spec_id == id => {
+                    target = Some(*result);
+                }
+                // Word 0 is the opcode, 1 the type, 2 the result, 3 the value.
+                (op::SPEC_CONSTANT, [_, result, _]) if Some(*result) == target => {
+                    position = Some(at + 3);
+                }
+                _ => {}
+            }
+        }
+        let position = position.ok_or_else(|| Error::KernelInvalid {
+            kernel: self.name.clone(),
+            reason: format!("it has no 32-bit specialisation constant {id}"),
+        })?;
+        self.words[position] = value;
+        Ok(self)
+    }
+}
+
+/// Walks the instructions: position, opcode, operands. Ends after the first that does not fit.
+pub(crate) struct Instructions<'a> {
+    words: &'a [u32],
+    at: usize,
+}
+
+impl<'a> Instructions<'a> {
+    pub(crate) fn of(words: &'a [u32]) -> Self {
+        Self {
+            words,
+            at: HEADER_WORDS,
+        }
+    }
+}
+
+impl<'a> Iterator for Instructions<'a> {
+    type Item = Result<(usize, u32, &'a [u32]), usize>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        let at = self.at;
+        let first = *self.words.get(at)?;
+        let count = (first >> 16) as usize;
+        let Some(instruction) = (count > 0)
+            .then(|| self.words.get(at..at + count))
+            .flatten()
+        else {
+            self.at = self.words.len();
+            return Some(Err(at));
+        };
+        self.at += count;
+        Some(Ok((at, first & 0xffff, &instruction[1..])))
+    }
+}
+
+/// A nul-terminated string in the low-order-first words of an operand.
+fn literal_string(words: &[u32]) -> Option<String> {
+    let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
+    let end = bytes.iter().position(|byte| *byte == 0)?;
+    (end > 0)
+        .then(|| String::from_utf8(bytes[..end].to_vec()).ok())
+        .flatten()
+}

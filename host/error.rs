@@ -1,0 +1,274 @@
+//! [`Error`]: everything that can go wrong, said so that it can be mended.
+
+use std::ops::Range;
+use std::path::PathBuf;
+use std::time::Duration;
+
+/// A result whose error is spherule's.
+pub type Result<T, E = Error> = std::result::Result<T, E>;
+
+/// What went wrong.
+///
+/// The message says what and where; [`Error::help`] says how to mend it. The first group of
+/// variants are the GPU's, in the order in which a program meets them; `docs/gpu-errors.md`
+/// sets each beside its CUDA counterpart.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// No adapter fits what was asked for.
+    #[error("no GPU adapter {wanted}; {found}")]
+    NoAdapter {
+        /// What was asked for, as the end of "no GPU adapter …".
+        wanted: String,
+        /// What there is instead.
+        found: String,
+    },
+
+    /// The adapter did not give a device.
+    #[error("the adapter {adapter} refused a device: {reason}")]
+    DeviceRefused {
+        /// The adapter's name.
+        adapter: String,
+        /// What the driver or wgpu said.
+        reason: String,
+    },
+
+    /// A kernel module is not SPIR-V, or the driver does not take it.
+    #[error("the kernel {kernel} is invalid: {reason}")]
+    KernelInvalid {
+        /// The module's or the entry point's name.
+        kernel: String,
+        /// What is wrong with it.
+        reason: String,
+    },
+
+    /// A buffer is larger than the device can make or bind.
+    #[error("the buffer of {label} needs {needed} bytes, and {device} takes at most {limit}")]
+    BufferTooLarge {
+        /// What the buffer holds.
+        label: String,
+        /// The size it would have.
+        needed: u64,
+        /// The device's limit.
+        limit: u64,
+        /// The device's name.
+        device: String,
+    },
+
+    /// The device has no memory left.
+    #[error("out of memory on {device} while {during}")]
+    OutOfMemory {
+        /// The device's name.
+        device: String,
+        /// What was being done.
+        during: String,
+    },
+
+    /// A launch asks for more threads, workgroups or workgroup memory than the device has.
+    #[error("the launch of {kernel} does not fit {device}: {what} is {asked}, and the limit is {limit}")]
+    LaunchLimits {
+        /// The entry point.
+        kernel: String,
+        /// The device's name.
+        device: String,
+        /// Which limit.
+        what: &'static str,
+        /// What the launch asks for.
+        asked: u64,
+        /// What the device has.
+        limit: u64,
+    },
+
+    /// wgpu or the driver found a call to be wrong.
+    #[error("the GPU rejected a call while {during}: {reason}")]
+    Validation {
+        /// What was being done.
+        during: String,
+        /// The message of wgpu or of the driver.
+        reason: String,
+    },
+
+    /// The device is gone: unplugged, reset by its watchdog, or destroyed.
+    #[error("the device {device} was lost while {during}: {reason}")]
+    DeviceLost {
+        /// The device's name.
+        device: String,
+        /// What was being done.
+        during: String,
+        /// What the driver said.
+        reason: String,
+    },
+
+    /// A launch did not end in time.
+    #[error("{device} did not finish within {} s while {during}", limit.as_secs_f64())]
+    Timeout {
+        /// The device's name.
+        device: String,
+        /// What was being waited for.
+        during: String,
+        /// How long it was waited for.
+        limit: Duration,
+    },
+
+    /// What a kernel wrote cannot be read back.
+    #[error("the result of {kernel} could not be read back: {reason}")]
+    Readback {
+        /// The entry point.
+        kernel: String,
+        /// What went wrong.
+        reason: String,
+    },
+
+    /// A kernel ended, but some of its threads had not written their result.
+    #[error("{missing} of {total} threads of {kernel} wrote no result on {device}")]
+    KernelIncomplete {
+        /// The entry point.
+        kernel: String,
+        /// The device's name.
+        device: String,
+        /// How many elements still hold what the buffer was filled with.
+        missing: usize,
+        /// How many there should be.
+        total: usize,
+    },
+
+    /// A scene, or a file that it names, is wrong.
+    #[error(transparent)]
+    Scene(#[from] Box<SceneError>),
+
+    /// An image cannot be made, read or written.
+    #[error("{path}: {reason}", path = path.display())]
+    Image {
+        /// The image file.
+        path: PathBuf,
+        /// What is wrong.
+        reason: String,
+        /// How to mend it.
+        help: String,
+    },
+}
+
+impl Error {
+    /// How to mend it, as a sentence for the person at the keyboard.
+    #[must_use]
+    pub fn help(&self) -> String {
+        match self {
+            Self::NoAdapter { .. } => {
+                "run `spherule devices` for the list; install a Vulkan driver (lavapipe, Debian's mesa-vulkan-drivers, \
+                 needs no GPU), or use `--device cpu`, which needs none"
+                    .into()
+            }
+            Self::DeviceRefused { .. } => {
+                "update the graphics driver, or use another device: `--device cpu` always works".into()
+            }
+            Self::KernelInvalid { .. } => {
+                "update the graphics driver; if you changed the kernel, check it with spirv-val".into()
+            }
+            Self::BufferTooLarge { .. } | Self::OutOfMemory { .. } => {
+                "render fewer spheres or a smaller image, or use `--device cpu`, which uses the host's memory".into()
+            }
+            Self::LaunchLimits { .. } => {
+                "launch fewer or smaller workgroups, or use a device with higher limits (`spherule devices` lists them)"
+                    .into()
+            }
+            Self::Validation { .. } => {
+                "this is a mistake in the calling program rather than in its input; VK_LOADER_LAYERS_ENABLE=*validation \
+                 names the call"
+                    .into()
+            }
+            Self::DeviceLost { .. } => {
+                "open the device again; if it keeps happening, the driver's watchdog may be ending long launches: use \
+                 `--device cpu`"
+                    .into()
+            }
+            Self::Timeout { .. } => "use a faster device or a smaller image; the device may also be hung".into(),
+            Self::Readback { .. } => "open the device again".into(),
+            Self::KernelIncomplete { .. } => {
+                "the kernel panicked on the device or the driver miscompiled it; compare with `--device cpu`".into()
+            }
+            Self::Scene(error) => error.help.clone(),
+            Self::Image { help, .. } => help.clone(),
+        }
+    }
+
+    /// Whether the input is to blame (exit code 2) rather than the machine (exit code 1).
+    #[must_use]
+    pub fn is_input(&self) -> bool {
+        matches!(self, Self::Scene(_))
+    }
+}
+
+/// What is wrong with a scene, and where.
+#[derive(Debug, thiserror::Error)]
+#[error("{message}")]
+pub struct SceneError {
+    /// The file that is wrong.
+    pub path: PathBuf,
+    /// What is wrong.
+    pub message: String,
+    /// How to mend it.
+    pub help: String,
+    /// The file's text and the bytes of it that are wrong, where the mistake has a place.
+    pub place: Option<Place>,
+}
+
+/// A place in a text.
+#[derive(Debug)]
+pub struct Place {
+    /// The whole text.
+    pub text: String,
+    /// The bytes in question.
+    pub span: Range<usize>,
+    /// What is wrong with them, in a few words.
+    pub label: String,
+}
+
+impl Place {
+    /// Line and column of the first byte, both counted from one; the column counts characters.
+    #[must_use]
+    pub fn line_column(&self) -> (usize, usize) {
+        let mut start = self.span.start.min(self.text.len());
+        while !self.text.is_char_boundary(start) {
+            start -= 1;
+        }
+        let before = &self.text[..start];
+        let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
+        (
+            before.matches('\n').count() + 1,
+            before[line_start..].chars().count() + 1,
+        )
+    }
+}
+
+impl SceneError {
+    pub(crate) fn without_place(
+        path: impl Into<PathBuf>,
+        message: impl Into<String>,
+        help: impl Into<String>,
+    ) -> Box<Self> {
+        Box::new(Self {
+            path: path.into(),
+            message: message.into(),
+            help: help.into(),
+            place: None,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Place;
+
+    #[test]
+    fn place_counts_lines_and_characters_from_one() {
+        let place = |start| Place {
+            text: "a\nδέ x\n".into(),
+            span: start..start,
+            label: String::new(),
+        };
+        assert_eq!(place(0).line_column(), (1, 1));
+        assert_eq!(place(2).line_column(), (2, 1));
+        assert_eq!(place(7).line_column(), (2, 4));
+        assert_eq!(place(1000).line_column(), (3, 1));
+    }
+}

@@ -1,0 +1,137 @@
+//! From linear colours and measurements to 8-bit colours.
+
+use rayon::prelude::*;
+use spherule_kernel::{Pixel, Shading};
+
+use super::Image;
+
+impl Image {
+    /// The image as 8-bit red, green, blue, row by row.
+    ///
+    /// Light goes through the sRGB transfer curve (IEC 61966-2-1). Measurements do not: normals
+    /// and flat red are stored as they are, and depth as a grey that falls linearly from white
+    /// at the nearest distance to black at the farthest (see [`Image::depth_range`]). Misses
+    /// keep the background, through the curve for light.
+    #[must_use]
+    pub fn to_rgb8(&self) -> Vec<u8> {
+        let encoder = Encoder::of(self);
+        let mut bytes = vec![0; self.pixels.len() * 3];
+        bytes
+            .par_chunks_mut(3 << 12)
+            .zip(self.pixels.par_chunks(1 << 12))
+            .for_each(|(bytes, pixels)| {
+                for (bytes, pixel) in bytes.chunks_exact_mut(3).zip(pixels) {
+                    for (byte, value) in bytes.iter_mut().zip(encoder.encode(pixel)) {
+                        // Rounds to nearest; a NaN becomes 0.
+                        *byte = (value * 255.0 + 0.5) as u8;
+                    }
+                }
+            });
+        bytes
+    }
+
+    /// The nearest and the farthest distance that the image shows, in scene units; `None`
+    /// unless it is a depth image that shows anything.
+    #[must_use]
+    pub fn depth_range(&self) -> Option<(f32, f32)> {
+        if self.shading != Shading::Depth {
+            return None;
+        }
+        self.pixels
+            .iter()
+            .filter(|pixel| pixel.is_hit())
+            .map(|pixel| pixel.color().x)
+            .fold(None, |range, distance| match range {
+                None => Some((distance, distance)),
+                Some((near, far)) => Some((distance.min(near), distance.max(far))),
+            })
+    }
+}
+
+/// Encodes the pixels of one image, or of several with a common depth range.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Encoder {
+    shading: Shading,
+    near: f32,
+    far: f32,
+}
+
+impl Encoder {
+    pub(super) fn of(image: &Image) -> Self {
+        let (near, far) = image.depth_range().unwrap_or((0.0, 0.0));
+        Self {
+            shading: image.shading,
+            near,
+            far,
+        }
+    }
+
+    /// The pixel's channels, each between 0 and 1.
+    pub(super) fn encode(&self, pixel: &Pixel) -> [f32; 3] {
+        let color = pixel.color().to_array();
+        match self.shading {
+            Shading::Depth if pixel.is_hit() => {
+                let span = self.far - self.near;
+                let grey = if span > 0.0 {
+                    (self.far - color[0]) / span
+                } else {
+                    1.0
+                };
+                [grey.clamp(0.0, 1.0); 3]
+            }
+            shading if shading.is_data() && pixel.is_hit() => {
+                color.map(|channel| channel.clamp(0.0, 1.0))
+            }
+            _ => color.map(srgb),
+        }
+    }
+}
+
+/// The sRGB transfer curve, from linear to encoded, clamped to 0 … 1.
+#[must_use]
+pub fn srgb(linear: f32) -> f32 {
+    let linear = linear.clamp(0.0, 1.0);
+    if linear <= 0.003_130_8 {
+        12.92 * linear
+    } else {
+        1.055 * linear.powf(1.0 / 2.4) - 0.055
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::Vec3;
+    use spherule_kernel::Hit;
+
+    fn one_pixel(shading: Shading, color: Vec3, depth: f32) -> Vec<u8> {
+        Image::new(1, 1, shading, vec![Pixel::new(color, depth)]).to_rgb8()
+    }
+
+    #[test]
+    fn light_is_curved_and_measurements_are_not() {
+        let half = Vec3::splat(0.5);
+        assert_eq!(one_pixel(Shading::Lit, half, 1.0), [188, 188, 188]);
+        assert_eq!(one_pixel(Shading::Normals, half, 1.0), [128, 128, 128]);
+        assert_eq!(one_pixel(Shading::Normals, half, Hit::NONE_T), [188, 188, 188]);
+        assert_eq!(one_pixel(Shading::Flat, Vec3::X, 1.0), [255, 0, 0]);
+    }
+
+    #[test]
+    fn depth_runs_from_white_to_black_between_its_ends() {
+        let pixels = [2.0, 3.0, 4.0]
+            .map(|distance| Pixel::new(Vec3::splat(distance), distance))
+            .to_vec();
+        let image = Image::new(3, 1, Shading::Depth, pixels);
+        assert_eq!(image.depth_range(), Some((2.0, 4.0)));
+        assert_eq!(image.to_rgb8(), [255, 255, 255, 128, 128, 128, 0, 0, 0]);
+    }
+
+    #[test]
+    fn out_of_range_and_nan_are_clamped() {
+        assert_eq!(
+            one_pixel(Shading::Lit, Vec3::new(-1.0, 2.0, f32::NAN), 1.0),
+            [0, 255, 0]
+        );
+    }
+}

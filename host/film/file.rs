@@ -1,0 +1,121 @@
+//! PNG and EXR files, written whole or not at all.
+
+use std::io::{BufWriter, Write};
+use std::path::Path;
+
+use image::codecs::openexr::OpenExrEncoder;
+use image::codecs::png::{CompressionType, FilterType, PngEncoder};
+use image::{ExtendedColorType, ImageEncoder};
+
+use super::Image;
+use crate::error::{Error, Result};
+
+/// A kind of image file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// 8 bits a channel; light in sRGB, measurements as they are.
+    Png,
+    /// 32-bit floats, linear.
+    Exr,
+}
+
+impl Format {
+    /// The format that the file's extension names.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Image`] if it names none that can be written.
+    pub fn of(path: &Path) -> Result<Self> {
+        let extension = path
+            .extension()
+            .map(|extension| extension.to_string_lossy().to_lowercase());
+        match extension.as_deref() {
+            Some("png") => Ok(Self::Png),
+            Some("exr") => Ok(Self::Exr),
+            _ => Err(failed(
+                path,
+                "not a kind of image that spherule writes",
+                "give a name that ends in .png or .exr",
+            )),
+        }
+    }
+}
+
+impl Image {
+    /// Writes the image to `path`, as its extension says. The file appears whole or not at all:
+    /// it is written beside its place under a temporary name, then renamed.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Image`] if the extension is unknown or the file cannot be written.
+    pub fn save(&self, path: impl AsRef<Path>) -> Result<()> {
+        let path = path.as_ref();
+        let format = Format::of(path)?;
+        if path.is_dir() {
+            return Err(failed(path, "is a directory", "name a file"));
+        }
+        let directory = match path.parent() {
+            Some(parent) if !parent.as_os_str().is_empty() => parent,
+            _ => Path::new("."),
+        };
+        let cannot_write = |error: std::io::Error| {
+            failed(
+                path,
+                format!("cannot be written: {error}"),
+                "check that the directory exists, may be written and has room",
+            )
+        };
+        let mut builder = tempfile::Builder::new();
+        builder.prefix(".spherule-");
+        // What any new file gets, less the umask, instead of a temporary file's privacy.
+        #[cfg(unix)]
+        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+        let mut file = builder.tempfile_in(directory).map_err(cannot_write)?;
+        {
+            let mut writer = BufWriter::with_capacity(1 << 20, file.as_file_mut());
+            self.encode_as(format, &mut writer).map_err(|error| match error {
+                image::ImageError::IoError(error) => cannot_write(error),
+                other => failed(path, format!("cannot be encoded: {other}"), "try another size or format"),
+            })?;
+            writer.flush().map_err(cannot_write)?;
+        }
+        file.persist(path)
+            .map_err(|error| cannot_write(error.error))?;
+        Ok(())
+    }
+
+    fn encode_as(&self, format: Format, writer: &mut impl Write) -> image::ImageResult<()> {
+        match format {
+            Format::Png => PngEncoder::new_with_quality(
+                writer,
+                CompressionType::Fast,
+                FilterType::Adaptive,
+            )
+            .write_image(&self.to_rgb8(), self.width, self.height, ExtendedColorType::Rgb8),
+            Format::Exr => {
+                let floats: Vec<f32> = self
+                    .pixels
+                    .iter()
+                    .flat_map(|pixel| pixel.color().to_array())
+                    .collect();
+                let mut bytes = std::io::Cursor::new(Vec::new());
+                OpenExrEncoder::new(&mut bytes).write_image(
+                    bytemuck::cast_slice(&floats),
+                    self.width,
+                    self.height,
+                    ExtendedColorType::Rgb32F,
+                )?;
+                writer.write_all(bytes.get_ref())?;
+                Ok(())
+            }
+        }
+    }
+}
+
+fn failed(path: &Path, reason: impl Into<String>, help: impl Into<String>) -> Error {
+    Error::Image {
+        path: path.into(),
+        reason: reason.into(),
+        help: help.into(),
+    }
+}

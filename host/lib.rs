@@ -1,0 +1,33 @@
+//! A ray tracer for spheres whose kernel is Rust.
+//!
+//! rust-gpu compiles the kernel to SPIR-V, wgpu dispatches it, and the very same functions run
+//! on the CPU. This crate is the host: it reads scenes, opens devices, renders and validates.
+//!
+//! # Map, in reading order
+//!
+//! | module | holds |
+//! | --- | --- |
+//! | [`kernel`] | the device code and the types shared with it: `Sphere`, `Ray`, `Hit`, `Camera` |
+//! | [`scene`] | what is rendered: TOML scenes, molecules from PDB and XYZ files |
+//! | [`device`] | adapters, buffers, kernels, launches, and their errors |
+//! | [`mod@render`] | a scene on a device, GPU or CPU |
+//! | [`film`] | images: encoding, files, comparison |
+//! | [`error`] | [`Error`]: what can go wrong, and how to mend it |
+//! | [`kernel_module`] | the kernel's SPIR-V that this build embeds |
+//! | [`cli`] | the command `spherule` |
+
+#![deny(missing_docs)]
+
+pub mod cli;
+pub mod device;
+pub mod error;
+pub mod film;
+pub mod kernel_module;
+pub mod render;
+pub mod scene;
+
+pub use device::{Device, DeviceChoice, Gpu};
+pub use error::{Error, Result};
+pub use film::Image;
+pub use scene::Scene;
+pub use spherule_kernel as kernel;

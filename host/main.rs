@@ -1,0 +1,5 @@
+//! The command `spherule`.
+
+fn main() -> std::process::ExitCode {
+    spherule::cli::main()
+}

@@ -1,0 +1,222 @@
+//! The GPU path: the `render` entry point, tile by tile and run by run.
+
+use std::time::{Duration, Instant};
+
+use glam::UVec2;
+use spherule_kernel::{Launch, Material, Pixel, Shading, Sphere};
+
+use super::pace::Pace;
+use super::{Progress, Timings};
+use crate::device::{Access, Buffer, Gpu, Kernel};
+use crate::error::{Error, Result};
+use crate::kernel_module;
+use crate::scene::World;
+
+/// The entry point's name, for messages.
+const ENTRY: &str = "render";
+/// Pixels of one tile at most: what one readback moves.
+const MAX_TILE_PIXELS: u64 = 1 << 23;
+
+/// Renders `launch`, which covers a whole image, on `gpu`.
+///
+/// # Errors
+///
+/// The device's errors, and [`Error::KernelIncomplete`] if a thread wrote no pixel.
+pub fn render(
+    gpu: &Gpu,
+    launch: &Launch,
+    world: &World,
+    shading: Shading,
+    progress: Progress<'_>,
+) -> Result<(Vec<Pixel>, Timings)> {
+    render_paced(gpu, launch, world, shading, progress, Pace::default())
+}
+
+/// [`render`] with the first launches sized by `pace`.
+///
+/// # Errors
+///
+/// As [`render`].
+pub fn render_paced(
+    gpu: &Gpu,
+    launch: &Launch,
+    world: &World,
+    shading: Shading,
+    progress: Progress<'_>,
+    mut pace: Pace,
+) -> Result<(Vec<Pixel>, Timings)> {
+    let started = Instant::now();
+    let module = kernel_module::f32()?.specialise(Shading::SPEC_ID, shading.to_u32())?;
+    let kernel = gpu.kernel(
+        &module,
+        ENTRY,
+        &[
+            Access::Uniform,
+            Access::Read,
+            Access::Read,
+            Access::Read,
+            Access::ReadWrite,
+        ],
+    )?;
+    let world = DeviceWorld::upload(gpu, world)?;
+    let size = launch.image_size;
+    let limits = gpu.limits();
+    let threads = u64::from(limits.max_compute_workgroups_per_dimension) * 8;
+    let max_pixels = (limits
+        .max_storage_buffer_binding_size
+        .min(limits.max_buffer_size)
+        / size_of::<Pixel>() as u64)
+        .min(MAX_TILE_PIXELS)
+        .min(u64::from(size.x) * u64::from(size.y));
+    let target = Target {
+        launch: gpu.upload_uniform("launch", launch)?,
+        pixels: gpu.zeroed("pixels", max_pixels as usize)?,
+    };
+    let mut timings = Timings {
+        setup: started.elapsed(),
+        ..Timings::default()
+    };
+
+    let mut image = vec![Pixel::default(); size.x as usize * size.y as usize];
+    let mut origin = UVec2::ZERO;
+    while origin.y < size.y {
+        let left = size - origin;
+        let mut tile = pace.tile(size.x, left, max_pixels, world.sphere_count);
+        tile.x = u64::from(tile.x).min(threads) as u32;
+        tile.y = if tile.x == size.x {
+            u64::from(tile.y).min(threads) as u32
+        } else {
+            1
+        };
+        let launch = Launch {
+            tile_origin: origin,
+            tile_size: tile,
+            ..*launch
+        };
+        timings.trace += render_tile(gpu, &kernel, &launch, &world, &target, &mut pace)?;
+
+        let reading = Instant::now();
+        let pixels = gpu.read_first(&target.pixels, (tile.x * tile.y) as usize)?;
+        check_written(gpu, &pixels)?;
+        // A tile is whole rows, or a part of one: either way it is one piece of the image.
+        let start = origin.y as usize * size.x as usize + origin.x as usize;
+        image[start..start + pixels.len()].copy_from_slice(&pixels);
+        timings.readback += reading.elapsed();
+
+        origin.x += tile.x;
+        if origin.x == size.x {
+            origin = UVec2::new(0, origin.y + tile.y);
+        }
+        progress(f64::from(origin.y) / f64::from(size.y));
+    }
+    Ok((image, timings))
+}
+
+/// What the launches write to, and what they are told.
+struct Target {
+    launch: Buffer<Launch>,
+    pixels: Buffer<Pixel>,
+}
+
+/// Renders one tile against every sphere.
+fn render_tile(
+    gpu: &Gpu,
+    kernel: &Kernel,
+    launch: &Launch,
+    world: &DeviceWorld,
+    target: &Target,
+    pace: &mut Pace,
+) -> Result<Duration> {
+    gpu.clear(&target.pixels)?;
+    let tile = launch.tile_size;
+    let pixels = u64::from(tile.x) * u64::from(tile.y);
+    let mut launch = *launch;
+    let mut took = Duration::ZERO;
+    for part in &world.parts {
+        launch.first_sphere = 0;
+        loop {
+            let left = part.spheres.len() as u32 - launch.first_sphere;
+            launch.sphere_count = left.min(pace.spheres(pixels));
+            gpu.update(&target.launch, &launch)?;
+            let time = gpu.launch(
+                kernel,
+                &[
+                    target.launch.binding(),
+                    part.spheres.binding(),
+                    part.material_ids.binding(),
+                    world.materials.binding(),
+                    target.pixels.binding(),
+                ],
+                kernel.workgroups_for([tile.x, tile.y, 1]),
+            )?;
+            pace.learn(pixels * u64::from(launch.sphere_count), time.best());
+            took += time.best();
+            launch.first_of_tile = 0;
+            launch.first_sphere += launch.sphere_count;
+            if launch.first_sphere as usize >= part.spheres.len() {
+                break;
+            }
+        }
+    }
+    Ok(took)
+}
+
+/// A kernel that panics on the device returns without a word; what it leaves behind is the zero
+/// that the buffer was filled with.
+fn check_written(gpu: &Gpu, pixels: &[Pixel]) -> Result<()> {
+    let missing = pixels.iter().filter(|pixel| !pixel.is_written()).count();
+    if missing == 0 {
+        return Ok(());
+    }
+    Err(Error::KernelIncomplete {
+        kernel: ENTRY.into(),
+        device: gpu.name().into(),
+        missing,
+        total: pixels.len(),
+    })
+}
+
+/// The world on the device, in parts that each fit one binding.
+struct DeviceWorld {
+    parts: Vec<Part>,
+    materials: Buffer<Material>,
+    sphere_count: u64,
+}
+
+struct Part {
+    spheres: Buffer<Sphere>,
+    material_ids: Buffer<u32>,
+}
+
+impl DeviceWorld {
+    fn upload(gpu: &Gpu, world: &World) -> Result<Self> {
+        let limits = gpu.limits();
+        let binding = limits
+            .max_storage_buffer_binding_size
+            .min(limits.max_buffer_size);
+        let spheres_a_part = (binding / size_of::<Sphere>() as u64).max(1) as usize;
+        let parts = if world.spheres.is_empty() {
+            vec![Part {
+                spheres: gpu.upload("spheres", &[])?,
+                material_ids: gpu.upload("material ids", &[])?,
+            }]
+        } else {
+            world
+                .spheres
+                .chunks(spheres_a_part)
+                .zip(world.material_ids.chunks(spheres_a_part))
+                .map(|(spheres, ids)| {
+                    Ok(Part {
+                        spheres: gpu.upload("spheres", spheres)?,
+                        material_ids: gpu.upload("material ids", ids)?,
+                    })
+                })
+                .collect::<Result<_>>()?
+        };
+        Ok(Self {
+            parts,
+            materials: gpu.upload("materials", &world.materials)?,
+            sphere_count: world.spheres.len() as u64,
+        })
+    }
+}

@@ -1,0 +1,120 @@
+//! Rendering a scene on a device.
+//!
+//! | module | holds |
+//! | --- | --- |
+//! | [`cpu`] | the kernel's functions over bands of rows, on every thread |
+//! | [`gpu`] | the kernel's entry point over tiles, within a device's limits |
+//! | [`pace`] | how much work one launch gets |
+
+pub mod cpu;
+pub mod gpu;
+pub mod pace;
+
+use std::time::{Duration, Instant};
+
+use spherule_kernel::{Camera, Launch, Shading};
+
+use crate::device::Device;
+use crate::error::{Error, Result, SceneError};
+use crate::film::Image;
+use crate::scene::Scene;
+
+/// Told now and then how far a render is: a number from 0 to 1. May be called from any thread.
+pub type Progress<'a> = &'a (dyn Fn(f64) + Sync);
+
+/// Ignores progress.
+pub const QUIET: Progress<'static> = &|_| {};
+
+/// An image, and what it took.
+#[derive(Debug)]
+pub struct Rendered {
+    /// The image.
+    pub image: Image,
+    /// What it took.
+    pub timings: Timings,
+}
+
+/// Where the time of a render went.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Timings {
+    /// Compiling the kernel and uploading the world; zero on the CPU.
+    pub setup: Duration,
+    /// Tracing: the device's own time where it can be measured, else the host's.
+    pub trace: Duration,
+    /// Copying the image back; zero on the CPU.
+    pub readback: Duration,
+}
+
+/// Renders `scene` on `device`.
+///
+/// ```
+/// use spherule::kernel::Shading;
+/// use spherule::{Device, DeviceChoice, Scene, render};
+/// # fn main() -> spherule::Result<()> {
+/// let scene = Scene::load("scenes/two-spheres.toml")?;
+/// let (device, _why) = Device::open(&DeviceChoice::Cpu)?;
+/// let rendered = render::render(&scene, Shading::Normals, &device, render::QUIET)?;
+/// assert_eq!(rendered.image.width(), scene.width);
+/// # Ok(()) }
+/// ```
+///
+/// # Errors
+///
+/// [`Error::Scene`] if the scene's view is degenerate, and the device's errors.
+pub fn render(
+    scene: &Scene,
+    shading: Shading,
+    device: &Device,
+    progress: Progress<'_>,
+) -> Result<Rendered> {
+    let launch = whole_image(scene)?;
+    match device {
+        Device::Cpu => {
+            let started = Instant::now();
+            let pixels = cpu::render(&launch, &scene.world, shading, progress);
+            let timings = Timings {
+                trace: started.elapsed(),
+                ..Timings::default()
+            };
+            Ok(Rendered {
+                image: Image::new(scene.width, scene.height, shading, pixels),
+                timings,
+            })
+        }
+        Device::Gpu(gpu) => {
+            let (pixels, timings) = gpu::render(gpu, &launch, &scene.world, shading, progress)?;
+            Ok(Rendered {
+                image: Image::new(scene.width, scene.height, shading, pixels),
+                timings,
+            })
+        }
+    }
+}
+
+/// The launch that covers the whole image and every sphere; tiles and runs are cut out of it.
+fn whole_image(scene: &Scene) -> Result<Launch> {
+    let size = glam::UVec2::new(scene.width, scene.height);
+    Ok(Launch {
+        camera: camera(scene)?,
+        background: scene.background,
+        first_of_tile: 1,
+        image_size: size,
+        tile_origin: glam::UVec2::ZERO,
+        tile_size: size,
+        first_sphere: 0,
+        sphere_count: u32::MAX,
+    })
+}
+
+fn camera(scene: &Scene) -> Result<Camera> {
+    scene
+        .view_or_framed()
+        .camera(scene.aspect())
+        .ok_or_else(|| {
+            Error::Scene(SceneError::without_place(
+                "",
+                "the scene's camera is degenerate",
+                "move eye and target apart, give an up that is not along the view, and a field of view between 0 and 180 degrees",
+            ))
+        })
+}

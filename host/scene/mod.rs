@@ -1,0 +1,128 @@
+//! Scenes: what is rendered, and from where.
+//!
+//! | module | holds |
+//! | --- | --- |
+//! | [`world`] | [`World`]: the spheres and their materials, in the device's own types |
+//! | [`view`] | [`View`]: where the camera is, given or framed around the world |
+//! | [`toml_file`] | scenes written by a person |
+//! | [`molecule`] | molecules from PDB and XYZ files |
+
+pub mod molecule;
+pub mod toml_file;
+pub mod view;
+pub mod world;
+
+use std::path::Path;
+
+use glam::Vec3;
+
+use crate::error::{Error, Result, SceneError};
+pub use view::View;
+pub use world::World;
+
+/// The largest width or height of an image, in pixels.
+pub const MAX_IMAGE_SIDE: u32 = 65_536;
+
+/// A world, a view of it, and the image to make.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    /// The spheres and their materials.
+    pub world: World,
+    /// Where the camera is; `None` frames the whole world.
+    pub view: Option<View>,
+    /// Width of the image in pixels.
+    pub width: u32,
+    /// Height of the image in pixels.
+    pub height: u32,
+    /// The colour of a ray that hits nothing, linear Rec. 709.
+    pub background: Vec3,
+}
+
+impl Scene {
+    /// The width and height of an image when nothing is said.
+    pub const DEFAULT_SIZE: (u32, u32) = (1280, 720);
+    /// The background when nothing is said: a light grey, linear Rec. 709.
+    pub const DEFAULT_BACKGROUND: Vec3 = Vec3::splat(0.85);
+
+    /// A scene of `world` at the default size, framed as a whole, on the default background.
+    #[must_use]
+    pub fn new(world: World) -> Self {
+        let (width, height) = Self::DEFAULT_SIZE;
+        Self {
+            world,
+            view: None,
+            width,
+            height,
+            background: Self::DEFAULT_BACKGROUND,
+        }
+    }
+
+    /// Reads a scene (`.toml`) or a molecule (`.pdb`, `.ent`, `.xyz`).
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Scene`] says which file is wrong, where in it, and how to mend it.
+    pub fn load(path: impl AsRef<Path>) -> Result<Self> {
+        let path = path.as_ref();
+        match extension(path).as_str() {
+            "toml" => toml_file::load(path),
+            extension if molecule::is_molecule(extension) => {
+                Ok(Self::new(molecule::load(path)?))
+            }
+            _ => Err(Error::Scene(SceneError::without_place(
+                path,
+                format!("{}: not a kind of file that spherule reads", path.display()),
+                "give a scene (.toml) or a molecule (.pdb, .ent or .xyz)",
+            ))),
+        }
+    }
+
+    /// The view that is rendered: the one given, or else one that frames the world.
+    #[must_use]
+    pub fn view_or_framed(&self) -> View {
+        self.view
+            .unwrap_or_else(|| View::framing(&self.world.spheres, self.aspect()))
+    }
+
+    /// Width over height.
+    #[must_use]
+    pub fn aspect(&self) -> f64 {
+        f64::from(self.width) / f64::from(self.height)
+    }
+}
+
+/// The file's extension in lower case, empty where there is none.
+fn extension(path: &Path) -> String {
+    path.extension()
+        .map(|extension| extension.to_string_lossy().to_lowercase())
+        .unwrap_or_default()
+}
+
+/// Reads a whole text file.
+fn read_text(path: &Path) -> Result<String> {
+    let bytes = std::fs::read(path).map_err(|error| {
+        let (message, help) = match error.kind() {
+            std::io::ErrorKind::NotFound => (
+                format!("{}: there is no such file", path.display()),
+                "check the name; a relative name counts from the current directory, or, inside a scene, from the scene's",
+            ),
+            std::io::ErrorKind::IsADirectory => (
+                format!("{}: is a directory", path.display()),
+                "name a file",
+            ),
+            _ => (
+                format!("{}: cannot be read: {error}", path.display()),
+                "check that the file may be read",
+            ),
+        };
+        SceneError::without_place(path, message, help)
+    })?;
+    String::from_utf8(bytes).map_err(|error| {
+        let at = error.utf8_error().valid_up_to();
+        Error::Scene(SceneError::without_place(
+            path,
+            format!("{}: byte {at} is not UTF-8 text", path.display()),
+            "save the file as UTF-8; compressed files must be unpacked first",
+        ))
+    })
+}

@@ -1,0 +1,163 @@
+//! Molecules: atoms become spheres with the van der Waals radius and the colour of their
+//! element. One scene unit is one ångström.
+
+pub mod elements;
+pub mod pdb;
+pub mod xyz;
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use glam::Vec3;
+use spherule_kernel::{Material, Sphere};
+
+use super::{World, extension, read_text};
+use crate::error::{Error, Place, Result, SceneError};
+use elements::Element;
+
+/// An atom of a molecule.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Atom {
+    /// Where it is, in ångström.
+    pub position: Vec3,
+    /// What it is.
+    pub element: &'static Element,
+}
+
+/// Whether a file with this extension (in lower case) is read as a molecule.
+#[must_use]
+pub fn is_molecule(extension: &str) -> bool {
+    matches!(extension, "pdb" | "ent" | "xyz")
+}
+
+/// Reads the molecule at `path` as a world of spheres.
+///
+/// # Errors
+///
+/// [`Error::Scene`] with the line that is wrong.
+pub fn load(path: &Path) -> Result<World> {
+    let text = read_text(path)?;
+    let atoms = if extension(path) == "xyz" {
+        xyz::parse(&text)
+    } else {
+        pdb::parse(&text)
+    };
+    match atoms {
+        Ok(atoms) => Ok(world(&atoms)),
+        Err(wrong) => Err(wrong.into_error(path, text)),
+    }
+}
+
+/// A world of these atoms, with one material for each element that occurs.
+#[must_use]
+pub fn world(atoms: &[Atom]) -> World {
+    let mut world = World::default();
+    let mut ids = BTreeMap::new();
+    let unknown = atoms
+        .iter()
+        .filter(|atom| atom.element.symbol == elements::UNKNOWN.symbol)
+        .count();
+    if unknown > 0 {
+        tracing::warn!(
+            "{unknown} atoms are of an element that cannot be told; they are drawn pink, with a radius of {} Å",
+            elements::UNKNOWN.radius
+        );
+    }
+    for atom in atoms {
+        let id = *ids
+            .entry(atom.element.symbol)
+            .or_insert_with(|| world.add_material(Material::diffuse(linear(atom.element.color))));
+        world.add(Sphere::new(atom.position, atom.element.radius), id);
+    }
+    world
+}
+
+/// What is wrong with a line of a molecule file.
+#[derive(Debug)]
+pub struct WrongLine {
+    /// The line, counted from zero.
+    line: usize,
+    message: String,
+    label: &'static str,
+    help: &'static str,
+}
+
+impl WrongLine {
+    fn new(
+        line: usize,
+        message: impl Into<String>,
+        label: &'static str,
+        help: &'static str,
+    ) -> Self {
+        Self {
+            line,
+            message: message.into(),
+            label,
+            help,
+        }
+    }
+
+    fn into_error(self, path: &Path, text: String) -> Error {
+        let start = text
+            .split_inclusive('\n')
+            .take(self.line)
+            .map(str::len)
+            .sum::<usize>()
+            .min(text.len());
+        let length = text[start..]
+            .find(['\r', '\n'])
+            .unwrap_or(text.len() - start);
+        Error::Scene(Box::new(SceneError {
+            path: path.into(),
+            message: self.message,
+            help: self.help.into(),
+            place: Some(Place {
+                span: start..start + length,
+                text,
+                label: self.label.into(),
+            }),
+        }))
+    }
+}
+
+/// From `0xRRGGBB` in sRGB to linear Rec. 709 (IEC 61966-2-1).
+fn linear(color: u32) -> Vec3 {
+    let channel = |shift: u32| {
+        let encoded = ((color >> shift) & 0xff) as f32 / 255.0;
+        if encoded <= 0.040_45 {
+            encoded / 12.92
+        } else {
+            ((encoded + 0.055) / 1.055).powf(2.4)
+        }
+    };
+    Vec3::new(channel(16), channel(8), channel(0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::film::encode::srgb;
+
+    #[test]
+    fn colours_survive_the_round_trip() {
+        for color in [0x00_00_00, 0xFF_FF_FF, 0x90_90_90, 0xFF_0D_0D, 0x01_02_0A] {
+            let back = linear(color)
+                .to_array()
+                .map(|channel| (srgb(channel) * 255.0).round() as u32);
+            assert_eq!(back, [color >> 16, (color >> 8) & 0xff, color & 0xff]);
+        }
+    }
+
+    #[test]
+    fn equal_elements_share_a_material() {
+        let carbon = elements::by_symbol("c").expect("carbon");
+        let atom = Atom {
+            position: Vec3::ZERO,
+            element: carbon,
+        };
+        let world = world(&[atom, atom]);
+        assert_eq!(world.materials.len(), 1);
+        assert_eq!(world.material_ids, [0, 0]);
+        assert_eq!(world.spheres[0].radius(), 1.7);
+    }
+}

@@ -1,0 +1,448 @@
+//! Scenes in TOML, read with spans so that a mistake points at its line and column.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use glam::Vec3;
+use serde::Deserialize;
+use spherule_kernel::{Material, Sphere};
+use toml::Spanned;
+
+use super::{MAX_IMAGE_SIDE, Scene, View, World, molecule, read_text};
+use crate::error::{Error, Place, Result, SceneError};
+
+/// The file as written; every value keeps its span.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct File {
+    #[serde(default)]
+    image: ImageTable,
+    camera: Option<Spanned<CameraTable>>,
+    #[serde(default)]
+    materials: BTreeMap<String, MaterialTable>,
+    #[serde(default, rename = "sphere")]
+    spheres: Vec<Spanned<SphereTable>>,
+    particles: Option<ParticlesTable>,
+}
+
+#[derive(Deserialize, Default)]
+#[serde(deny_unknown_fields)]
+struct ImageTable {
+    width: Option<Spanned<i64>>,
+    height: Option<Spanned<i64>>,
+    background: Option<Spanned<[f64; 3]>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct CameraTable {
+    eye: Spanned<[f64; 3]>,
+    target: Spanned<[f64; 3]>,
+    up: Option<Spanned<[f64; 3]>>,
+    vertical_fov: Option<Spanned<f64>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct MaterialTable {
+    kind: MaterialKind,
+    color: Spanned<[f64; 3]>,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum MaterialKind {
+    Diffuse,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SphereTable {
+    center: Spanned<[f64; 3]>,
+    radius: Spanned<f64>,
+    material: Option<Spanned<String>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ParticlesTable {
+    file: Spanned<String>,
+}
+
+/// Reads the scene at `path`; files that it names count from its directory.
+pub(super) fn load(path: &Path) -> Result<Scene> {
+    parse(path, read_text(path)?)
+}
+
+/// Makes a scene of `text`, the content of the file at `path`.
+///
+/// # Errors
+///
+/// [`Error::Scene`] with the place of the mistake.
+pub fn parse(path: &Path, text: String) -> Result<Scene> {
+    let file: File = match toml::from_str(&text) {
+        Ok(file) => file,
+        Err(error) => {
+            let span = error.span().unwrap_or(0..text.len().min(1));
+            let message = error.message().trim().to_owned();
+            return Err(Error::Scene(Box::new(SceneError {
+                path: path.into(),
+                help: help_for_toml(&message),
+                place: Some(Place {
+                    text,
+                    span,
+                    label: "here".into(),
+                }),
+                message,
+            })));
+        }
+    };
+    Reader { path, text }.scene(file)
+}
+
+fn help_for_toml(message: &str) -> String {
+    if message.contains("unknown field") {
+        "check the spelling; the README shows every key".into()
+    } else if message.contains("unknown variant") {
+        "materials are of kind \"diffuse\"".into()
+    } else if message.contains("missing field") {
+        "add it; the README shows every key".into()
+    } else {
+        "the README shows a whole scene; tables are [name], spheres are [[sphere]], strings stand in quotes".into()
+    }
+}
+
+/// Checks values, knowing the text that they came from.
+struct Reader<'a> {
+    path: &'a Path,
+    text: String,
+}
+
+impl Reader<'_> {
+    fn scene(&self, file: File) -> Result<Scene> {
+        let mut scene = Scene::new(self.world(&file)?);
+        if let Some(width) = &file.image.width {
+            scene.width = self.side("width", width)?;
+        }
+        if let Some(height) = &file.image.height {
+            scene.height = self.side("height", height)?;
+        }
+        if let Some(background) = &file.image.background {
+            scene.background = self.color("background", background)?;
+        }
+        if let Some(camera) = &file.camera {
+            scene.view = Some(self.view(camera)?);
+        }
+        Ok(scene)
+    }
+
+    fn world(&self, file: &File) -> Result<World> {
+        let mut world = World::default();
+        let mut ids = BTreeMap::new();
+        for (name, material) in &file.materials {
+            let made = match material.kind {
+                MaterialKind::Diffuse => Material::diffuse(self.reflectance(&material.color)?),
+            };
+            ids.insert(name.as_str(), world.add_material(made));
+        }
+        let mut default_id = None;
+        for table in &file.spheres {
+            let table = table.get_ref();
+            let id = match &table.material {
+                Some(name) => *ids.get(name.get_ref().as_str()).ok_or_else(|| {
+                    let known: Vec<&str> = ids.keys().copied().collect();
+                    self.wrong(
+                        name,
+                        format!("there is no material \"{}\"", name.get_ref()),
+                        "not defined",
+                        if known.is_empty() {
+                            format!("define it: [materials.{}] with kind = \"diffuse\" and color = [r, g, b]", name.get_ref())
+                        } else {
+                            format!("the scene defines {}", known.join(", "))
+                        },
+                    )
+                })?,
+                None => *default_id
+                    .get_or_insert_with(|| world.add_material(Material::diffuse(Vec3::splat(0.5)))),
+            };
+            let sphere = Sphere::new(
+                self.vector("center", &table.center)?,
+                self.radius(&table.radius)?,
+            );
+            world.add(sphere, id);
+        }
+        if let Some(particles) = &file.particles {
+            world.append(&self.particles(&particles.file)?);
+        }
+        if world.spheres.is_empty() {
+            return Err(SceneError::without_place(
+                self.path,
+                format!("{}: the scene has no spheres", self.path.display()),
+                "add a [[sphere]] with center and radius, or [particles] with a file",
+            )
+            .into());
+        }
+        Ok(world)
+    }
+
+    fn particles(&self, file: &Spanned<String>) -> Result<World> {
+        let named = Path::new(file.get_ref());
+        let path = self.path.parent().unwrap_or(Path::new("")).join(named);
+        if !molecule::is_molecule(&super::extension(&path)) {
+            return Err(self
+                .wrong(
+                    file,
+                    format!("{}: not a kind of particle file that spherule reads", file.get_ref()),
+                    "unknown kind",
+                    "give a .pdb, .ent or .xyz file",
+                )
+                .into());
+        }
+        molecule::load(&path).map_err(|error| match error {
+            // A file that is not there is a mistake in the scene; one that is there but wrong
+            // says more about itself than its name here does.
+            Error::Scene(inner) if inner.place.is_none() => self
+                .wrong(file, inner.message, "named here", inner.help)
+                .into(),
+            other => other,
+        })
+    }
+
+    fn view(&self, camera: &Spanned<CameraTable>) -> Result<View> {
+        let table = camera.get_ref();
+        let view = View {
+            eye: self.vector("eye", &table.eye)?,
+            target: self.vector("target", &table.target)?,
+            up: match &table.up {
+                Some(up) => self.vector("up", up)?,
+                None => Vec3::Y,
+            },
+            vertical_fov: match &table.vertical_fov {
+                Some(fov) if *fov.get_ref() > 0.0 && *fov.get_ref() < 180.0 => *fov.get_ref(),
+                Some(fov) => {
+                    return Err(self
+                        .wrong(
+                            fov,
+                            format!("a vertical_fov of {} degrees is not possible", fov.get_ref()),
+                            "out of range",
+                            "give an angle in degrees above 0 and below 180, for example 40",
+                        )
+                        .into());
+                }
+                None => View::DEFAULT_FOV,
+            },
+        };
+        if view.eye == view.target {
+            return Err(self
+                .wrong(
+                    &table.target,
+                    "eye and target are the same point",
+                    "same as eye",
+                    "the camera looks from eye to target: move one of them",
+                )
+                .into());
+        }
+        if view.camera(1.0).is_none() {
+            let message = "up is zero or points along the view";
+            let help = "give an up that points upwards in the image, for example [0, 1, 0]";
+            return Err(match &table.up {
+                Some(up) => self.wrong(up, message, "no roll angle follows", help),
+                None => self.wrong(camera, message, "up is [0, 1, 0] here", help),
+            }
+            .into());
+        }
+        Ok(view)
+    }
+
+    fn side(&self, name: &str, value: &Spanned<i64>) -> Result<u32> {
+        u32::try_from(*value.get_ref())
+            .ok()
+            .filter(|side| (1..=MAX_IMAGE_SIDE).contains(side))
+            .ok_or_else(|| {
+                self.wrong(
+                    value,
+                    format!("a {name} of {} pixels is not possible", value.get_ref()),
+                    "out of range",
+                    format!("give a whole number from 1 to {MAX_IMAGE_SIDE}"),
+                )
+                .into()
+            })
+    }
+
+    fn radius(&self, value: &Spanned<f64>) -> Result<f32> {
+        let radius = *value.get_ref() as f32;
+        if radius.is_finite() && radius > 0.0 {
+            return Ok(radius);
+        }
+        Err(self
+            .wrong(
+                value,
+                format!("a radius of {} is not possible", value.get_ref()),
+                "must be above zero and finite",
+                "give a radius above zero that a 32-bit float can hold",
+            )
+            .into())
+    }
+
+    fn vector(&self, name: &str, value: &Spanned<[f64; 3]>) -> Result<Vec3> {
+        let vector = Vec3::from_array(value.get_ref().map(|x| x as f32));
+        if vector.is_finite() {
+            return Ok(vector);
+        }
+        Err(self
+            .wrong(
+                value,
+                format!("{name} is not finite"),
+                "NaN, infinite or too large",
+                "give three numbers that 32-bit floats can hold",
+            )
+            .into())
+    }
+
+    fn color(&self, name: &str, value: &Spanned<[f64; 3]>) -> Result<Vec3> {
+        let color = self.vector(name, value)?;
+        if color.min_element() >= 0.0 {
+            return Ok(color);
+        }
+        Err(self
+            .wrong(
+                value,
+                format!("{name} has a channel below zero"),
+                "negative",
+                "give linear red, green and blue, each zero or above",
+            )
+            .into())
+    }
+
+    fn reflectance(&self, value: &Spanned<[f64; 3]>) -> Result<Vec3> {
+        let color = self.color("color", value)?;
+        if color.max_element() <= 1.0 {
+            return Ok(color);
+        }
+        Err(self
+            .wrong(
+                value,
+                "color has a channel above one",
+                "reflects more light than it receives",
+                "give linear red, green and blue between 0 and 1 (divide 8-bit values by 255 and undo the sRGB curve)",
+            )
+            .into())
+    }
+
+    fn wrong<T>(
+        &self,
+        value: &Spanned<T>,
+        message: impl Into<String>,
+        label: impl Into<String>,
+        help: impl Into<String>,
+    ) -> Box<SceneError> {
+        Box::new(SceneError {
+            path: self.path.into(),
+            message: message.into(),
+            help: help.into(),
+            place: Some(Place {
+                text: self.text.clone(),
+                span: value.span(),
+                label: label.into(),
+            }),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const GOOD: &str = r#"
+[image]
+width = 4
+height = 3
+background = [0, 0.5, 1]
+
+[camera]
+eye = [0, 0, 0]
+target = [0, 0, -1]
+vertical_fov = 90
+
+[materials.red]
+kind = "diffuse"
+color = [1, 0, 0]
+
+[[sphere]]
+center = [0, 0, -3]
+radius = 0.5
+material = "red"
+
+[[sphere]]
+center = [0, -100.5, -3]
+radius = 100
+"#;
+
+    fn read(text: &str) -> Result<Scene> {
+        parse(Path::new("test.toml"), text.into())
+    }
+
+    #[test]
+    fn a_whole_scene_is_read() {
+        let scene = read(GOOD).expect("a scene");
+        assert_eq!((scene.width, scene.height), (4, 3));
+        assert_eq!(scene.background, Vec3::new(0.0, 0.5, 1.0));
+        assert_eq!(
+            scene.world.spheres[1],
+            Sphere::new(Vec3::new(0.0, -100.5, -3.0), 100.0)
+        );
+        assert_eq!(scene.world.materials[0], Material::diffuse(Vec3::X));
+        assert_eq!(scene.world.material_ids, [0, 1]);
+        assert_eq!(scene.view.expect("a view").vertical_fov, 90.0);
+    }
+
+    /// Each mistake, the line it must be found on, and a word of the message.
+    #[test]
+    fn each_mistake_is_refused_at_its_line() {
+        let cases = [
+            ("width = 4", "width = 0", 3, "width of 0"),
+            ("width = 4", "width = 4.5", 3, "invalid type"),
+            ("width = 4", "wdith = 4", 3, "unknown field"),
+            ("width = 4", "width = 99999", 3, "99999"),
+            ("[0, 0.5, 1]", "[0, -0.5, 1]", 5, "below zero"),
+            ("[0, 0.5, 1]", "[0, 0.5]", 5, "invalid length"),
+            ("[camera]", "[lens]", 7, "unknown field"),
+            ("eye = [0, 0, 0]", "eye = [0, nan, 0]", 8, "eye is not finite"),
+            ("eye = [0, 0, 0]", "eye = [0, inf, 0]", 8, "eye is not finite"),
+            ("eye = [0, 0, 0]", "eye = [0, 1e39, 0]", 8, "eye is not finite"),
+            ("eye = [0, 0, 0]", "", 7, "missing field `eye`"),
+            ("target = [0, 0, -1]", "target = [0, 0, 0]", 9, "same point"),
+            ("target = [0, 0, -1]", "target = [0, 9, 0]", 7, "along the view"),
+            ("vertical_fov = 90", "vertical_fov = 180", 10, "180 degrees"),
+            ("vertical_fov = 90", "vertical_fov = nan", 10, "NaN degrees"),
+            ("\"diffuse\"", "\"mirror\"", 13, "unknown variant"),
+            ("color = [1, 0, 0]", "color = [1.5, 0, 0]", 14, "above one"),
+            ("radius = 0.5", "radius = 0", 18, "radius of 0"),
+            ("radius = 0.5", "radius = -1", 18, "radius of -1"),
+            ("radius = 0.5", "radius = nan", 18, "radius of NaN"),
+            ("radius = 0.5", "radius = 1e-60", 18, "radius of 0.000"),
+            ("radius = 0.5", "radius = \"0.5\"", 18, "invalid type"),
+            ("material = \"red\"", "material = \"blue\"", 19, "no material \"blue\""),
+            ("radius = 100", "radius = 100\n[particles]\nfile = \"no.pdb\"", 25, "no such file"),
+            ("radius = 100", "radius = 100\n[particles]\nfile = \"no.gro\"", 25, "not a kind"),
+            ("radius = 100", "radius = 100\nradius = 1", 24, "duplicate key"),
+        ];
+        for (good, bad, line, word) in cases {
+            assert!(GOOD.contains(good), "{good}");
+            let error = read(&GOOD.replacen(good, bad, 1)).expect_err(bad);
+            let Error::Scene(error) = error else {
+                panic!("{bad}: {error:?}")
+            };
+            assert!(error.message.contains(word), "{bad}: {}", error.message);
+            assert!(!error.help.is_empty(), "{bad}");
+            let place = error.place.as_ref().expect("a place");
+            assert_eq!(place.line_column().0, line, "{bad}: {error:?}");
+        }
+    }
+
+    #[test]
+    fn a_scene_without_spheres_is_refused() {
+        let error = read("[image]\nwidth = 3").expect_err("no spheres");
+        assert!(error.to_string().contains("no spheres"));
+    }
+}

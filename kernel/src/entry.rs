@@ -1,0 +1,144 @@
+//! The `#[spirv]` entry points, and nothing else: each finds its element and calls the plain
+//! function that the CPU calls too.
+//!
+//! Bindings are in descriptor set 0, in the order of the parameters. Buffers are as long as
+//! the work; threads beyond it return.
+
+use glam::{UVec2, UVec3, Vec4};
+use spirv_std::spirv;
+
+use crate::film::render_pixel;
+use crate::shading::shade;
+use crate::{Hit, Launch, Material, Pixel, Ray, Sphere, Surface, layout, nearest_hit};
+
+/// Renders one launch: a tile of the image against a run of the spheres.
+#[spirv(compute(threads(8, 8), entry_point_name = "render"))]
+pub fn render(
+    #[spirv(global_invocation_id)] id: UVec3,
+    #[spirv(spec_constant(id = 0, default = 0))] shading: u32,
+    #[spirv(uniform, descriptor_set = 0, binding = 0)] launch: &Launch,
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 1)] spheres: &[Sphere],
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 2)] material_ids: &[u32],
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 3)] materials: &[Material],
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 4)] pixels: &mut [Pixel],
+) {
+    let pixel = UVec2::new(id.x, id.y);
+    if pixel.x < launch.tile_size.x && pixel.y < launch.tile_size.y {
+        let index = (pixel.y * launch.tile_size.x + pixel.x) as usize;
+        if index < pixels.len() {
+            pixels[index] = render_pixel(
+                shading,
+                launch,
+                spheres,
+                material_ids,
+                materials,
+                pixel,
+                pixels[index],
+            );
+        }
+    }
+}
+
+/// Finds the nearest hit of each ray among all spheres.
+#[spirv(compute(threads(64), entry_point_name = "trace_rays"))]
+pub fn trace_rays(
+    #[spirv(global_invocation_id)] id: UVec3,
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 0)] rays: &[Ray],
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 1)] spheres: &[Sphere],
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 2)] hits: &mut [Hit],
+) {
+    let index = id.x as usize;
+    if index < rays.len() && index < hits.len() {
+        hits[index] = nearest_hit(&rays[index], spheres);
+    }
+}
+
+/// Intersects ray i with sphere i and nothing else; writes the parameter of the hit.
+#[spirv(compute(threads(64), entry_point_name = "intersect_pairs"))]
+pub fn intersect_pairs(
+    #[spirv(global_invocation_id)] id: UVec3,
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 0)] rays: &[Ray],
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 1)] spheres: &[Sphere],
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 2)] parameters: &mut [f32],
+) {
+    let index = id.x as usize;
+    if index < rays.len() && index < spheres.len() && index < parameters.len() {
+        parameters[index] = spheres[index].intersect(&rays[index]);
+    }
+}
+
+/// Computes the surface at parameter i of ray i on sphere i; writes point and normal, two
+/// vectors an element.
+#[spirv(compute(threads(64), entry_point_name = "find_surfaces"))]
+pub fn find_surfaces(
+    #[spirv(global_invocation_id)] id: UVec3,
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 0)] rays: &[Ray],
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 1)] spheres: &[Sphere],
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 2)] parameters: &[f32],
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 3)] surfaces: &mut [Vec4],
+) {
+    let index = id.x as usize;
+    if index < rays.len()
+        && index < spheres.len()
+        && index < parameters.len()
+        && 2 * index + 1 < surfaces.len()
+    {
+        let surface = Surface::at(&rays[index], parameters[index], spheres[index]);
+        surfaces[2 * index] = surface.point.extend(1.0);
+        surfaces[2 * index + 1] = surface.normal.extend(0.0);
+    }
+}
+
+/// Makes the ray through each pixel of an image whose size the launch gives.
+#[spirv(compute(threads(64), entry_point_name = "make_camera_rays"))]
+pub fn make_camera_rays(
+    #[spirv(global_invocation_id)] id: UVec3,
+    #[spirv(uniform, descriptor_set = 0, binding = 0)] launch: &Launch,
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 1)] rays: &mut [Ray],
+) {
+    let index = id.x;
+    let size = launch.image_size;
+    if index < size.x * size.y && (index as usize) < rays.len() {
+        let pixel = UVec2::new(index % size.x, index / size.x);
+        rays[index as usize] = launch.camera.pixel_ray(pixel, size);
+    }
+}
+
+/// Shades the hit at parameter i of ray i on sphere i in each of the four modes; writes four
+/// colours an element.
+#[spirv(compute(threads(64), entry_point_name = "shade_hits"))]
+pub fn shade_hits(
+    #[spirv(global_invocation_id)] id: UVec3,
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 0)] rays: &[Ray],
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 1)] spheres: &[Sphere],
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 2)] parameters: &[f32],
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 3)] materials: &[Material],
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 4)] colors: &mut [Vec4],
+) {
+    let index = id.x as usize;
+    if index < rays.len()
+        && index < spheres.len()
+        && index < parameters.len()
+        && index < materials.len()
+        && 4 * index + 3 < colors.len()
+    {
+        let ray = &rays[index];
+        let t = parameters[index];
+        let surface = Surface::at(ray, t, spheres[index]);
+        let material = &materials[index];
+        let mut mode = 0;
+        while mode < 4 {
+            let color = shade(mode, ray, t, &surface, material);
+            colors[4 * index + mode as usize] = color.extend(1.0);
+            mode += 1;
+        }
+    }
+}
+
+/// Writes the layout of the shared types as this compiler sees it.
+#[spirv(compute(threads(1), entry_point_name = "measure_layout"))]
+pub fn measure_layout(
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 0)] table: &mut [u32],
+) {
+    layout::write(table);
+}

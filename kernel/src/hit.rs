@@ -1,0 +1,47 @@
+//! [`Hit`]: what a ray found. Runs on the GPU and on the CPU.
+
+use bytemuck::{Pod, Zeroable};
+
+/// The nearest intersection of a ray with a world of spheres, or none.
+///
+/// "None" is said with finite numbers, because shader compilers may assume that infinities and
+/// NaNs do not occur.
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Hit {
+    /// The parameter along the ray, or [`Hit::NONE_T`].
+    pub t: f32,
+    /// The index of the sphere, or [`Hit::NONE_SPHERE`].
+    pub sphere: u32,
+}
+
+impl Hit {
+    /// The parameter that stands for "no hit": the largest finite number.
+    pub const NONE_T: f32 = f32::MAX;
+    /// The index that stands for "no sphere".
+    pub const NONE_SPHERE: u32 = u32::MAX;
+    /// No hit.
+    pub const NONE: Self = Self {
+        t: Self::NONE_T,
+        sphere: Self::NONE_SPHERE,
+    };
+
+    /// Whether there is a hit.
+    #[inline]
+    #[must_use]
+    pub fn is_some(&self) -> bool {
+        self.sphere != Self::NONE_SPHERE
+    }
+}
+
+impl Default for Hit {
+    fn default() -> Self {
+        Self::NONE
+    }
+}
+
+const _: () = {
+    assert!(size_of::<Hit>() == 8);
+    assert!(core::mem::offset_of!(Hit, t) == 0);
+    assert!(core::mem::offset_of!(Hit, sphere) == 4);
+};

@@ -1,0 +1,59 @@
+//! The memory layout of every type that crosses between host and device, as numbers. Runs on
+//! the GPU and on the CPU, so that the two can be compared.
+
+use crate::{Camera, Hit, Launch, Material, Pixel, Ray, Sphere};
+use core::mem::offset_of;
+
+macro_rules! layouts {
+    ($($name:literal = $value:expr;)*) => {
+        /// What each entry of the table measures, in order: a type's size, or a field's offset.
+        #[cfg(not(target_arch = "spirv"))]
+        pub const NAMES: &[&str] = &[$($name),*];
+
+        /// How many entries there are.
+        pub const COUNT: usize = [$($value),*].len();
+
+        /// Writes the table, in bytes, as the compiler of this very code sees it. A slice that
+        /// is too short is filled as far as it goes.
+        #[inline]
+        pub fn write(table: &mut [u32]) {
+            let mut index = 0;
+            $(
+                if index < table.len() {
+                    table[index] = $value as u32;
+                }
+                index += 1;
+            )*
+            let _ = index;
+        }
+    };
+}
+
+layouts! {
+    "size of Sphere" = size_of::<Sphere>();
+    "size of Ray" = size_of::<Ray>();
+    "Ray.origin" = offset_of!(Ray, origin);
+    "Ray.t_min" = offset_of!(Ray, t_min);
+    "Ray.direction" = offset_of!(Ray, direction);
+    "Ray.t_max" = offset_of!(Ray, t_max);
+    "size of Hit" = size_of::<Hit>();
+    "Hit.t" = offset_of!(Hit, t);
+    "Hit.sphere" = offset_of!(Hit, sphere);
+    "size of Camera" = size_of::<Camera>();
+    "Camera.eye" = offset_of!(Camera, eye);
+    "Camera.forward" = offset_of!(Camera, forward);
+    "Camera.right" = offset_of!(Camera, right);
+    "Camera.up" = offset_of!(Camera, up);
+    "size of Material" = size_of::<Material>();
+    "Material.color" = offset_of!(Material, color);
+    "size of Pixel" = size_of::<Pixel>();
+    "size of Launch" = size_of::<Launch>();
+    "Launch.camera" = offset_of!(Launch, camera);
+    "Launch.background" = offset_of!(Launch, background);
+    "Launch.first_of_tile" = offset_of!(Launch, first_of_tile);
+    "Launch.image_size" = offset_of!(Launch, image_size);
+    "Launch.tile_origin" = offset_of!(Launch, tile_origin);
+    "Launch.tile_size" = offset_of!(Launch, tile_size);
+    "Launch.first_sphere" = offset_of!(Launch, first_sphere);
+    "Launch.sphere_count" = offset_of!(Launch, sphere_count);
+}

@@ -1,0 +1,59 @@
+//! The device code of spherule, and the types that it shares with the host.
+//!
+//! One crate, two compilers: rust-gpu turns it into SPIR-V for the GPU, rustc turns it into
+//! machine code for the CPU. Every line that decides a pixel is in here and nowhere else, as a
+//! CUDA program would mark it `__host__ __device__`.
+//!
+//! # Map, in reading order
+//!
+//! | module | holds |
+//! | --- | --- |
+//! | [`ray`] | [`Ray`]: an origin, a direction, an interval |
+//! | [`sphere`] | [`Sphere`]: a centre and a radius in one 16-byte load |
+//! | [`hit`] | [`Hit`]: how far along the ray, and which sphere |
+//! | [`precision`] | ways to intersect a ray with a sphere |
+//! | [`nearest`] | the nearest hit of a ray among a slice of spheres |
+//! | [`surface`] | the point and the normal at a hit |
+//! | [`camera`] | [`Camera`]: from a pixel to a ray |
+//! | [`material`] | [`Material`]: what a sphere looks like |
+//! | [`shading`] | [`Shading`]: from a hit to a colour |
+//! | [`film`] | [`Launch`] and [`Pixel`]: what a launch is told, what it writes |
+//! | [`layout`] | sizes and offsets of the shared types, as numbers |
+//! | `entry` | the `#[spirv]` entry points, behind the feature `entry-points` |
+//! | `spirv` | the committed modules, for the host only |
+//!
+//! # Units
+//!
+//! Lengths are scene units, colours are linear Rec. 709, angles are radians unless a name says
+//! otherwise. A parameter along a ray counts in lengths of the ray's direction, which need not
+//! be a unit vector.
+
+#![no_std]
+#![deny(missing_docs)]
+
+pub mod camera;
+#[cfg(feature = "entry-points")]
+pub mod entry;
+pub mod film;
+pub mod hit;
+pub mod layout;
+pub mod material;
+pub mod nearest;
+pub mod precision;
+pub mod ray;
+pub mod shading;
+pub mod sphere;
+#[cfg(not(target_arch = "spirv"))]
+pub mod spirv;
+pub mod surface;
+
+pub use camera::Camera;
+pub use film::{Launch, Pixel};
+pub use glam;
+pub use hit::Hit;
+pub use material::Material;
+pub use nearest::nearest_hit;
+pub use ray::Ray;
+pub use shading::Shading;
+pub use sphere::Sphere;
+pub use surface::Surface;

@@ -1,0 +1,52 @@
+//! The nearest hit among many spheres, by testing every one. Runs on the GPU and on the CPU.
+
+use spirv_std::arch::IndexUnchecked;
+
+use crate::hit::Hit;
+use crate::ray::Ray;
+use crate::sphere::Sphere;
+
+/// The nearest hit of `ray` among `spheres`; of two equally near, the one of lower index.
+///
+/// ```
+/// use spherule_kernel::{Hit, Ray, Sphere, glam::Vec3, nearest_hit};
+///
+/// let world = [
+///     Sphere::new(Vec3::new(0.0, 0.0, -3.0), 0.5),
+///     Sphere::new(Vec3::new(0.0, -100.5, -3.0), 100.0),
+/// ];
+/// let ahead = Ray::new(Vec3::ZERO, Vec3::NEG_Z);
+/// assert_eq!(nearest_hit(&ahead, &world), Hit { t: 2.5, sphere: 0 });
+/// let up = Ray::new(Vec3::ZERO, Vec3::Y);
+/// assert_eq!(nearest_hit(&up, &world), Hit::NONE);
+/// ```
+#[inline]
+#[must_use]
+pub fn nearest_hit(ray: &Ray, spheres: &[Sphere]) -> Hit {
+    nearest_hit_in(ray, spheres, 0, spheres.len() as u32)
+}
+
+/// [`nearest_hit`] among `spheres[first..first + count]`; a range that leaves the slice is cut
+/// to it. The hit's index counts from the start of the slice.
+#[inline]
+#[must_use]
+pub fn nearest_hit_in(ray: &Ray, spheres: &[Sphere], first: u32, count: u32) -> Hit {
+    let len = spheres.len() as u32;
+    let first = first.min(len);
+    let end = first + count.min(len - first);
+
+    let mut ray = *ray;
+    let mut hit = Hit::NONE;
+    let mut index = first;
+    while index < end {
+        // SAFETY: `end` is at most the length of the slice.
+        let sphere = unsafe { *spheres.index_unchecked(index as usize) };
+        let t = sphere.intersect(&ray);
+        if t < ray.t_max {
+            ray.t_max = t;
+            hit = Hit { t, sphere: index };
+        }
+        index += 1;
+    }
+    hit
+}

@@ -1,0 +1,45 @@
+//! The quadratic formula as a textbook prints it, in f32. Runs on the GPU and on the CPU.
+//!
+//! A point of the sphere satisfies |P − C|² = r². With P = O + t·D this is a quadratic in t,
+//!
+//! > a t² + b t + c = 0,  a = D·D,  b = 2 (O − C)·D,  c = |O − C|² − r²,
+//!
+//! whose roots are (−b ± √(b² − 4ac)) / 2a. It is the fastest form to write down and the first
+//! to lose digits: c cancels when the ray starts near the surface of a large sphere, the
+//! discriminant cancels when the sphere is small and far, and −b cancels against the root when
+//! b² is much larger than 4ac.
+
+// On the CPU, std has `f32::sqrt`.
+#[cfg(target_arch = "spirv")]
+use spirv_std::num_traits::Float as _;
+
+use crate::hit::Hit;
+use crate::ray::Ray;
+use crate::sphere::Sphere;
+
+/// The smaller root in the ray's interval, or [`Hit::NONE_T`].
+///
+/// A NaN anywhere makes every comparison below false, so the answer is "no hit".
+#[inline]
+#[must_use]
+pub fn intersect(sphere: Sphere, ray: &Ray) -> f32 {
+    let from_center = ray.origin - sphere.center();
+    let a = ray.direction.dot(ray.direction);
+    let b = 2.0 * from_center.dot(ray.direction);
+    let c = from_center.dot(from_center) - sphere.radius() * sphere.radius();
+    let discriminant = b * b - 4.0 * a * c;
+
+    let mut t = Hit::NONE_T;
+    if discriminant >= 0.0 {
+        let root = discriminant.sqrt();
+        let near = (-b - root) / (2.0 * a);
+        let far = (-b + root) / (2.0 * a);
+        if (far >= ray.t_min) & (far < ray.t_max) {
+            t = far;
+        }
+        if (near >= ray.t_min) & (near < ray.t_max) {
+            t = near;
+        }
+    }
+    t
+}

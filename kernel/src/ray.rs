@@ -1,0 +1,59 @@
+//! [`Ray`]: a half-open piece of a line. Runs on the GPU and on the CPU.
+
+use bytemuck::{Pod, Zeroable};
+use glam::Vec3;
+
+/// The points `origin + t · direction` for `t_min ≤ t < t_max`.
+///
+/// The interval is half-open so that "nearer than what was found so far" is one comparison, and
+/// so that the first of two equally near spheres wins whatever the order of the comparison.
+///
+/// 32 bytes, with each vector on a 16-byte boundary as std430 wants it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Ray {
+    /// Where the ray starts, in scene units.
+    pub origin: Vec3,
+    /// The smallest `t` that counts, inclusive.
+    pub t_min: f32,
+    /// Where the ray goes. It need not be a unit vector; a zero vector hits nothing.
+    pub direction: Vec3,
+    /// The bound on `t`, exclusive.
+    pub t_max: f32,
+}
+
+impl Ray {
+    /// The whole half-line from `origin` along `direction`: `0 ≤ t < f32::MAX`.
+    #[inline]
+    #[must_use]
+    pub fn new(origin: Vec3, direction: Vec3) -> Self {
+        Self::within(origin, direction, 0.0, f32::MAX)
+    }
+
+    /// The piece of the line with `t_min ≤ t < t_max`.
+    #[inline]
+    #[must_use]
+    pub fn within(origin: Vec3, direction: Vec3, t_min: f32, t_max: f32) -> Self {
+        Self {
+            origin,
+            t_min,
+            direction,
+            t_max,
+        }
+    }
+
+    /// The point at parameter `t`.
+    #[inline]
+    #[must_use]
+    pub fn at(&self, t: f32) -> Vec3 {
+        self.origin + self.direction * t
+    }
+}
+
+const _: () = {
+    assert!(size_of::<Ray>() == 32);
+    assert!(core::mem::offset_of!(Ray, origin) == 0);
+    assert!(core::mem::offset_of!(Ray, t_min) == 12);
+    assert!(core::mem::offset_of!(Ray, direction) == 16);
+    assert!(core::mem::offset_of!(Ray, t_max) == 28);
+};

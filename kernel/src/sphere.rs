@@ -1,0 +1,81 @@
+//! [`Sphere`]: a centre and a radius. Runs on the GPU and on the CPU.
+
+use bytemuck::{Pod, Zeroable};
+use glam::{Vec3, Vec4};
+
+use crate::precision::textbook;
+use crate::ray::Ray;
+
+/// A sphere, stored as one [`Vec4`] so that a GPU fetches it with a single 16-byte load.
+///
+/// The host makes the world out of this very type and uploads it as it is.
+///
+/// ```
+/// use spherule_kernel::{Ray, Sphere, glam::Vec3};
+///
+/// let sphere = Sphere::new(Vec3::new(0.0, 0.0, -3.0), 0.5);
+/// let ray = Ray::new(Vec3::ZERO, Vec3::NEG_Z);
+/// assert_eq!(sphere.intersect(&ray), 2.5);
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Sphere {
+    center_radius: Vec4,
+}
+
+impl Sphere {
+    /// A sphere with this centre and this radius, both in scene units.
+    ///
+    /// The radius is meant to be positive. [`Sphere::is_valid`] says whether a sphere is one
+    /// that the kernel is made for; one that is not is still safe to trace, and is either
+    /// missed or hit like its mirror image of positive radius.
+    #[inline]
+    #[must_use]
+    pub const fn new(center: Vec3, radius: f32) -> Self {
+        Self {
+            center_radius: Vec4::new(center.x, center.y, center.z, radius),
+        }
+    }
+
+    /// The centre, in scene units.
+    #[inline]
+    #[must_use]
+    pub fn center(&self) -> Vec3 {
+        self.center_radius.truncate()
+    }
+
+    /// The radius, in scene units.
+    #[inline]
+    #[must_use]
+    pub fn radius(&self) -> f32 {
+        self.center_radius.w
+    }
+
+    /// Whether the centre is finite and the radius is finite and above zero.
+    #[must_use]
+    pub fn is_valid(&self) -> bool {
+        self.center_radius.is_finite() && self.radius() > 0.0
+    }
+
+    /// Where `ray` enters the sphere, or leaves it if it starts inside: the smaller root in the
+    /// ray's interval, as a parameter along the ray. [`Hit::NONE_T`](crate::Hit::NONE_T) if
+    /// there is none.
+    #[inline]
+    #[must_use]
+    pub fn intersect(&self, ray: &Ray) -> f32 {
+        textbook::intersect(*self, ray)
+    }
+
+    /// Whether `point` is inside the sphere or on its surface.
+    #[inline]
+    #[must_use]
+    pub fn contains(&self, point: Vec3) -> bool {
+        let from_center = point - self.center();
+        from_center.dot(from_center) <= self.radius() * self.radius()
+    }
+}
+
+const _: () = {
+    assert!(size_of::<Sphere>() == 16);
+    assert!(core::mem::offset_of!(Sphere, center_radius) == 0);
+};
