@@ -110,26 +110,15 @@ pub enum Error {
         limit: Duration,
     },
 
-    /// What a kernel wrote cannot be read back.
-    #[error("the result of {kernel} could not be read back: {reason}")]
+    /// What a kernel wrote cannot be read back, or it did not write all of it.
+    #[error("{what} could not be read back from {device}: {reason}")]
     Readback {
-        /// The entry point.
-        kernel: String,
-        /// What went wrong.
-        reason: String,
-    },
-
-    /// A kernel ended, but some of its threads had not written their result.
-    #[error("{missing} of {total} threads of {kernel} wrote no result on {device}")]
-    KernelIncomplete {
-        /// The entry point.
-        kernel: String,
+        /// What the buffer holds.
+        what: String,
         /// The device's name.
         device: String,
-        /// How many elements still hold what the buffer was filled with.
-        missing: usize,
-        /// How many there should be.
-        total: usize,
+        /// What went wrong.
+        reason: String,
     },
 
     /// A scene, or a file that it names, is wrong.
@@ -182,9 +171,9 @@ impl Error {
                     .into()
             }
             Self::Timeout { .. } => "use a faster device or a smaller image; the device may also be hung".into(),
-            Self::Readback { .. } => "open the device again".into(),
-            Self::KernelIncomplete { .. } => {
-                "the kernel panicked on the device or the driver miscompiled it; compare with `--device cpu`".into()
+            Self::Readback { .. } => {
+                "the kernel may have panicked on the device, or the driver miscompiled it: compare with `--device cpu`"
+                    .into()
             }
             Self::Scene(error) => error.help.clone(),
             Self::Image { help, .. } => help.clone(),

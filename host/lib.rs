@@ -31,3 +31,4 @@ pub use error::{Error, Result};
 pub use film::Image;
 pub use scene::Scene;
 pub use spherule_kernel as kernel;
+pub use wgpu;

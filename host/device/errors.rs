@@ -64,6 +64,8 @@ impl Watch {
         let validation = pollster::block_on(validation.pop());
         let out_of_memory = pollster::block_on(out_of_memory.pop());
         let internal = pollster::block_on(internal.pop());
+        // What a lost device says of a call, "invalid buffer" and the like, is not the cause.
+        self.still_there(during)?;
         match out_of_memory.or(validation).or(internal) {
             Some(wgpu::Error::OutOfMemory { .. }) => Err(Error::OutOfMemory {
                 device: self.device_name.clone(),
@@ -73,7 +75,7 @@ impl Watch {
                 during: during.into(),
                 reason: one_line(&error),
             }),
-            None => self.still_there(during).map(|()| value),
+            None => Ok(value),
         }
     }
 

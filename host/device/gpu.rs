@@ -14,7 +14,7 @@
 //! ```
 
 use std::borrow::Cow;
-use std::sync::mpsc;
+use std::sync::{Mutex, PoisonError, mpsc};
 use std::time::{Duration, Instant};
 
 use bytemuck::Pod;
@@ -106,7 +106,8 @@ pub struct Gpu {
     name: String,
     passthrough: bool,
     timeout: Duration,
-    timer: Option<Timer>,
+    /// Locked while a launch uses it: there is one pair of timestamps.
+    timer: Option<Mutex<Timer>>,
     watch: Watch,
 }
 
@@ -151,9 +152,11 @@ impl Gpu {
         })?;
         let watch = Watch::over(&device, &name);
         let timer = if features.contains(wgpu::Features::TIMESTAMP_QUERY) {
-            Some(watch.checked(&device, "making timestamp queries", || {
-                Timer::new(&device, &queue)
-            })?)
+            Some(Mutex::new(watch.checked(
+                &device,
+                "making timestamp queries",
+                || Timer::new(&device, &queue),
+            )?))
         } else {
             None
         };
@@ -459,6 +462,11 @@ impl Gpu {
             return Err(self.over_limit(&kernel.name, "the number of workgroups", *asked, limit));
         }
         let during = format!("running the kernel {}", kernel.name);
+        let timer = self
+            .timer
+            .as_ref()
+            .map(|timer| timer.lock().unwrap_or_else(PoisonError::into_inner));
+        let timer = timer.as_deref();
         let started = Instant::now();
         let (submission, mapped) = self.watch.checked(&self.device, &during, || {
             let group = self.bind_group(kernel, bindings);
@@ -466,23 +474,23 @@ impl Gpu {
             {
                 let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
                     label: Some(&kernel.name),
-                    timestamp_writes: self.timer.as_ref().map(Timer::writes),
+                    timestamp_writes: timer.map(Timer::writes),
                 });
                 pass.set_pipeline(&kernel.pipeline);
                 pass.set_bind_group(0, &group, &[]);
                 let [x, y, z] = workgroups;
                 pass.dispatch_workgroups(x, y, z);
             }
-            if let Some(timer) = &self.timer {
+            if let Some(timer) = timer {
                 timer.resolve(&mut encoder);
             }
             let submission = self.queue.submit([encoder.finish()]);
-            (submission, self.timer.as_ref().map(Timer::map))
+            (submission, timer.map(Timer::map))
         })?;
         self.watch
             .wait(&self.device, submission, self.timeout, &during)?;
         let host = started.elapsed();
-        let device = match (&self.timer, mapped) {
+        let device = match (timer, mapped) {
             (Some(timer), Some(mapped)) => timer.elapsed(&mapped),
             _ => None,
         };
@@ -526,7 +534,8 @@ impl Gpu {
             return Ok(Vec::new());
         }
         let failed = |reason: String| Error::Readback {
-            kernel: buffer.label.clone(),
+            what: buffer.label.clone(),
+            device: self.name.clone(),
             reason,
         };
         let bytes = (len * size_of::<T>()) as u64;

@@ -4,6 +4,8 @@
 //! through, so the structure is checked here: the header, the length of each instruction, and
 //! what the host relies on (entry points, workgroup sizes, specialisation constants).
 
+use std::fmt;
+
 use crate::error::{Error, Result};
 
 const MAGIC: u32 = 0x0723_0203;
@@ -15,6 +17,7 @@ mod op {
     pub(super) const EXECUTION_MODE: u32 = 16;
     pub(super) const CAPABILITY: u32 = 17;
     pub(super) const SPEC_CONSTANT: u32 = 50;
+    pub(super) const FUNCTION_END: u32 = 56;
     pub(super) const DECORATE: u32 = 71;
     pub(super) const DECORATION_SPEC_ID: u32 = 1;
     pub(super) const MODE_LOCAL_SIZE: u32 = 17;
@@ -32,12 +35,23 @@ pub struct EntryPoint {
 }
 
 /// A SPIR-V module whose structure has been checked.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub struct Module {
     name: String,
     words: Vec<u32>,
     entry_points: Vec<EntryPoint>,
     needs_f64: bool,
+}
+
+impl fmt::Debug for Module {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Module")
+            .field("name", &self.name)
+            .field("words", &self.words.len())
+            .field("entry_points", &self.entry_points)
+            .field("needs_f64", &self.needs_f64)
+            .finish()
+    }
 }
 
 impl Module {
@@ -73,9 +87,11 @@ impl Module {
 
         let mut entries: Vec<(u32, EntryPoint)> = Vec::new();
         let mut needs_f64 = false;
+        let mut last_opcode = 0;
         for instruction in Instructions::of(&words) {
             let (at, opcode, operands) =
                 instruction.map_err(|at| invalid(format!("the instruction at word {at} does not fit the module")))?;
+            last_opcode = opcode;
             match (opcode, operands) {
                 (op::CAPABILITY, [op::CAPABILITY_FLOAT64]) => needs_f64 = true,
                 (op::ENTRY_POINT, [op::MODEL_GL_COMPUTE, function, name @ ..]) => {
@@ -102,6 +118,9 @@ impl Module {
         let entry_points: Vec<EntryPoint> = entries.into_iter().map(|(_, entry)| entry).collect();
         if entry_points.is_empty() {
             return Err(invalid("it has no compute entry point".into()));
+        }
+        if last_opcode != op::FUNCTION_END {
+            return Err(invalid("it ends in the middle of a function".into()));
         }
         if let Some(entry) = entry_points
             .iter()

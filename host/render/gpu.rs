@@ -21,7 +21,7 @@ const MAX_TILE_PIXELS: u64 = 1 << 23;
 ///
 /// # Errors
 ///
-/// The device's errors, and [`Error::KernelIncomplete`] if a thread wrote no pixel.
+/// The device's errors, and [`Error::Readback`] if a thread wrote no pixel.
 pub fn render(
     gpu: &Gpu,
     launch: &Launch,
@@ -168,11 +168,10 @@ fn check_written(gpu: &Gpu, pixels: &[Pixel]) -> Result<()> {
     if missing == 0 {
         return Ok(());
     }
-    Err(Error::KernelIncomplete {
-        kernel: ENTRY.into(),
+    Err(Error::Readback {
+        what: "the image".into(),
         device: gpu.name().into(),
-        missing,
-        total: pixels.len(),
+        reason: format!("{missing} of {} threads of {ENTRY} wrote no pixel", pixels.len()),
     })
 }
 

@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use crate::material::Material;
 use crate::ray::Ray;
-use crate::surface::Surface;
+use crate::surface::{Surface, unit};
 
 /// What the image shows of a hit.
 ///
@@ -54,7 +54,7 @@ pub fn shade(shading: u32, ray: &Ray, t: f32, surface: &Surface, material: &Mate
     if shading == LIT {
         // Lambert with the light where the eye is. The absolute value lights the inside of a
         // sphere that the eye is in.
-        let cosine = surface.normal.dot(ray.direction.normalize_or_zero());
+        let cosine = surface.normal.dot(unit(ray.direction));
         material.color * cosine.abs()
     } else if shading == NORMALS {
         surface.normal * 0.5 + Vec3::splat(0.5)

@@ -1,0 +1,309 @@
+//! Each device function, on every adapter of this machine and on the CPU, compared.
+
+mod common;
+
+use common::{Random, gpus, skips, ulps};
+use glam::{UVec2, Vec3, Vec4};
+use spherule::device::{Access, Gpu};
+use spherule::kernel::shading::shade;
+use spherule::kernel::{
+    Camera, Hit, Launch, Material, Ray, Sphere, Surface, layout, nearest_hit,
+};
+use spherule::kernel_module;
+
+const COUNT: usize = 10_000;
+
+/// How many units in the last place a device may be off where it divides, takes a square root,
+/// or fuses a product with a sum. Vulkan allows 2.5 for a division and more for a square root,
+/// and a fused discriminant moves the root by a few more.
+const ULPS: u64 = 64;
+
+fn random_rays(seed: u64) -> Vec<Ray> {
+    let mut random = Random::new(seed);
+    (0..COUNT)
+        .map(|_| Ray::new(random.vec3(-4.0, 4.0), random.vec3(-1.0, 1.0)))
+        .collect()
+}
+
+fn random_spheres(seed: u64, count: usize) -> Vec<Sphere> {
+    let mut random = Random::new(seed);
+    (0..count)
+        .map(|_| Sphere::new(random.vec3(-3.0, 3.0), random.within(0.1, 2.0)))
+        .collect()
+}
+
+/// Whether the discriminant is so close to zero, for its terms, that rounding may decide it.
+fn is_grazing(ray: &Ray, sphere: &Sphere) -> bool {
+    let oc = (ray.origin - sphere.center()).as_dvec3();
+    let d = ray.direction.as_dvec3();
+    let radius = f64::from(sphere.radius());
+    let (a, b) = (d.dot(d), oc.dot(d));
+    let c = oc.dot(oc) - radius * radius;
+    let discriminant = b * b - a * c;
+    // Sixteen roundings of the largest term.
+    discriminant.abs() <= 16.0 * f64::from(f32::EPSILON) * (b * b).max(a * oc.dot(oc))
+}
+
+/// Whether the ray starts so close to the surface that rounding decides on which side.
+fn starts_on_surface(ray: &Ray, sphere: &Sphere) -> bool {
+    let distance = (ray.origin - sphere.center()).as_dvec3().length();
+    (distance - f64::from(sphere.radius())).abs() < 1e-4
+}
+
+fn run<T: bytemuck::Pod>(
+    gpu: &Gpu,
+    entry: &str,
+    inputs: &[spherule::device::Binding<'_>],
+    output: &spherule::device::Buffer<T>,
+    threads: usize,
+) -> Vec<T> {
+    let module = kernel_module::f32().expect("the kernel");
+    let mut access = vec![Access::Read; inputs.len()];
+    access.push(Access::ReadWrite);
+    let kernel = gpu.kernel(&module, entry, &access).expect(entry);
+    let mut bindings = inputs.to_vec();
+    bindings.push(output.binding());
+    gpu.launch(&kernel, &bindings, kernel.workgroups_for([threads as u32, 1, 1]))
+        .expect(entry);
+    gpu.read(output).expect(entry)
+}
+
+#[test]
+fn sphere_intersect_agrees() {
+    if skips("sphere_intersect_agrees") {
+        return;
+    }
+    // Every second ray is aimed at its sphere.
+    let spheres = random_spheres(2, COUNT);
+    let mut rays = random_rays(1);
+    for (ray, sphere) in rays.iter_mut().zip(&spheres).step_by(2) {
+        ray.direction = (sphere.center() - ray.origin) + ray.direction * sphere.radius();
+    }
+    for gpu in gpus() {
+        let output = gpu.zeroed::<f32>("parameters", COUNT).expect("a buffer");
+        let on_gpu = run(
+            gpu,
+            "intersect_pairs",
+            &[
+                gpu.upload("rays", &rays).expect("rays").binding(),
+                gpu.upload("spheres", &spheres).expect("spheres").binding(),
+            ],
+            &output,
+            COUNT,
+        );
+        let mut hits = 0;
+        for ((ray, sphere), t) in rays.iter().zip(&spheres).zip(on_gpu) {
+            let expected = sphere.intersect(ray);
+            if is_grazing(ray, sphere) || starts_on_surface(ray, sphere) {
+                continue;
+            }
+            hits += usize::from(expected < Hit::NONE_T);
+            // A root near zero is a difference of larger numbers: their ulps count.
+            let scale = ray.origin.distance(sphere.center()) / ray.direction.length();
+            assert!(
+                ulps(t, expected) <= ULPS || (t - expected).abs() <= 1e-5 * scale,
+                "{}: {ray:?} {sphere:?} {t} {expected}",
+                gpu.name()
+            );
+        }
+        assert!(hits > COUNT / 10, "{hits} hits are too few to tell anything");
+    }
+}
+
+#[test]
+fn nearest_hit_agrees() {
+    if skips("nearest_hit_agrees") {
+        return;
+    }
+    let rays = random_rays(3);
+    for count in [0, 1, 7, 300] {
+        let spheres = random_spheres(4, count);
+        for gpu in gpus() {
+            if count == 0 {
+                continue;
+            }
+            let output = gpu.upload("hits", &vec![Hit { t: -1.0, sphere: 7 }; COUNT]).expect("hits");
+            let on_gpu = run(
+                gpu,
+                "trace_rays",
+                &[
+                    gpu.upload("rays", &rays).expect("rays").binding(),
+                    gpu.upload("spheres", &spheres).expect("spheres").binding(),
+                ],
+                &output,
+                COUNT,
+            );
+            let mut differing = 0;
+            for (ray, hit) in rays.iter().zip(on_gpu) {
+                assert_ne!(hit.t, -1.0, "a thread wrote nothing");
+                differing += usize::from(hit.sphere != nearest_hit(ray, &spheres).sphere);
+            }
+            // Only a ray that grazes one of the spheres, or starts on one, may be decided
+            // differently.
+            let excusable = rays
+                .iter()
+                .filter(|ray| {
+                    spheres
+                        .iter()
+                        .any(|sphere| is_grazing(ray, sphere) || starts_on_surface(ray, sphere))
+                })
+                .count();
+            assert!(differing <= excusable, "{}: {differing} of {excusable}", gpu.name());
+        }
+    }
+}
+
+#[test]
+fn surfaces_agree() {
+    if skips("surfaces_agree") {
+        return;
+    }
+    let (rays, spheres, parameters) = hits();
+    for gpu in gpus() {
+        let output = gpu
+            .zeroed::<Vec4>("surfaces", 2 * rays.len())
+            .expect("surfaces");
+        let on_gpu = run(
+            gpu,
+            "find_surfaces",
+            &[
+                gpu.upload("rays", &rays).expect("rays").binding(),
+                gpu.upload("spheres", &spheres).expect("spheres").binding(),
+                gpu.upload("parameters", &parameters).expect("parameters").binding(),
+            ],
+            &output,
+            rays.len(),
+        );
+        for (index, found) in on_gpu.chunks_exact(2).enumerate() {
+            let expected = Surface::at(&rays[index], parameters[index], spheres[index]);
+            let [point, normal] = [found[0].truncate(), found[1].truncate()];
+            assert!(point.distance(expected.point) <= 1e-5, "{point} {expected:?}");
+            assert!(normal.distance(expected.normal) <= 1e-4, "{normal} {expected:?}");
+            assert!((normal.length() - 1.0).abs() <= 1e-6);
+        }
+    }
+}
+
+#[test]
+fn shading_agrees_in_every_mode() {
+    if skips("shading_agrees_in_every_mode") {
+        return;
+    }
+    let (rays, spheres, parameters) = hits();
+    let mut random = Random::new(9);
+    let materials: Vec<Material> = rays
+        .iter()
+        .map(|_| Material::diffuse(random.vec3(0.0, 1.0)))
+        .collect();
+    for gpu in gpus() {
+        let output = gpu
+            .zeroed::<Vec4>("colors", 4 * rays.len())
+            .expect("colors");
+        let on_gpu = run(
+            gpu,
+            "shade_hits",
+            &[
+                gpu.upload("rays", &rays).expect("rays").binding(),
+                gpu.upload("spheres", &spheres).expect("spheres").binding(),
+                gpu.upload("parameters", &parameters).expect("parameters").binding(),
+                gpu.upload("materials", &materials).expect("materials").binding(),
+            ],
+            &output,
+            rays.len(),
+        );
+        for (index, colors) in on_gpu.chunks_exact(4).enumerate() {
+            let surface = Surface::at(&rays[index], parameters[index], spheres[index]);
+            for (mode, color) in colors.iter().enumerate() {
+                let expected = shade(
+                    mode as u32,
+                    &rays[index],
+                    parameters[index],
+                    &surface,
+                    &materials[index],
+                );
+                assert!(
+                    color.truncate().distance(expected) <= 1e-4 * expected.length().max(1.0),
+                    "mode {mode}: {color} {expected}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn camera_rays_agree() {
+    if skips("camera_rays_agree") {
+        return;
+    }
+    let size = UVec2::new(67, 31);
+    let launch = Launch {
+        camera: Camera::look_at(
+            Vec3::new(1.0, 2.0, 3.0),
+            Vec3::new(-0.5, 0.25, -4.0),
+            Vec3::new(0.1, 1.0, 0.0),
+            0.7,
+            67.0 / 31.0,
+        )
+        .expect("a camera"),
+        image_size: size,
+        ..Launch::default()
+    };
+    let count = (size.x * size.y) as usize;
+    let module = kernel_module::f32().expect("the kernel");
+    for gpu in gpus() {
+        let kernel = gpu
+            .kernel(&module, "make_camera_rays", &[Access::Uniform, Access::ReadWrite])
+            .expect("a kernel");
+        let uniform = gpu.upload_uniform("launch", &launch).expect("a uniform");
+        let output = gpu.zeroed::<Ray>("rays", count).expect("rays");
+        gpu.launch(
+            &kernel,
+            &[uniform.binding(), output.binding()],
+            kernel.workgroups_for([count as u32, 1, 1]),
+        )
+        .expect("a launch");
+        for (index, ray) in gpu.read(&output).expect("rays").iter().enumerate() {
+            let pixel = UVec2::new(index as u32 % size.x, index as u32 / size.x);
+            let expected = launch.camera.pixel_ray(pixel, size);
+            assert_eq!(ray.origin, expected.origin);
+            assert_eq!((ray.t_min, ray.t_max), (expected.t_min, expected.t_max));
+            assert!(ray.direction.distance(expected.direction) <= 1e-6, "{ray:?} {expected:?}");
+        }
+    }
+}
+
+/// The layout of every shared type as the GPU's compiler sees it is the host's.
+#[test]
+fn layout_agrees() {
+    if skips("layout_agrees") {
+        return;
+    }
+    let mut expected = vec![0; layout::COUNT];
+    layout::write(&mut expected);
+    for gpu in gpus() {
+        let output = gpu.zeroed::<u32>("layout", layout::COUNT).expect("a table");
+        let on_gpu = run(gpu, "measure_layout", &[], &output, 1);
+        for ((name, on_gpu), on_host) in layout::NAMES.iter().zip(on_gpu).zip(&expected) {
+            assert_eq!(on_gpu, *on_host, "{name}");
+        }
+    }
+}
+
+/// Rays with a sphere that each hits well inside its silhouette, and where.
+fn hits() -> (Vec<Ray>, Vec<Sphere>, Vec<f32>) {
+    let mut random = Random::new(5);
+    let mut found = (Vec::new(), Vec::new(), Vec::new());
+    while found.0.len() < COUNT {
+        let sphere = Sphere::new(random.vec3(-3.0, 3.0), random.within(0.5, 2.0));
+        let origin = random.vec3(-4.0, 4.0);
+        let inside = sphere.center() + random.vec3(-0.5, 0.5) * sphere.radius();
+        let ray = Ray::new(origin, (inside - origin) * random.within(0.1, 2.0));
+        let t = sphere.intersect(&ray);
+        if t < Hit::NONE_T {
+            found.0.push(ray);
+            found.1.push(sphere);
+            found.2.push(t);
+        }
+    }
+    found
+}

@@ -1,0 +1,139 @@
+//! The committed SPIR-V: that it is what the sources say, and lays memory out as the host does.
+//!
+//! With the feature `compile-kernel` the sources have just been compiled, and the test compares
+//! bit by bit. `SPHERULE_RENEW_KERNEL=1` writes what was compiled over what is committed.
+
+use std::collections::BTreeMap;
+
+use spherule::device::Module;
+use spherule::kernel::{layout, spirv};
+
+#[cfg(feature = "compile-kernel")]
+#[test]
+fn committed_modules_are_the_output_of_the_sources() {
+    use std::path::Path;
+
+    let compiled = Path::new(env!("OUT_DIR")).join("spirv");
+    let committed = Path::new(env!("CARGO_MANIFEST_DIR")).join("kernel/spirv");
+    for file in ["f32.spv", "manifest.toml"] {
+        let fresh = std::fs::read(compiled.join(file)).expect("the build script wrote it");
+        if std::env::var_os("SPHERULE_RENEW_KERNEL").is_some_and(|value| value != "0") {
+            std::fs::write(committed.join(file), &fresh).expect("the kernel's folder can be written");
+            continue;
+        }
+        let old = std::fs::read(committed.join(file)).unwrap_or_default();
+        assert!(
+            fresh == old,
+            "kernel/spirv/{file} is not what the sources compile to; SPHERULE_RENEW_KERNEL=1 renews it"
+        );
+    }
+}
+
+#[test]
+fn the_manifest_names_the_committed_module() {
+    let manifest: toml::Table = spirv::MANIFEST.parse().expect("the manifest is TOML");
+    let module = manifest["f32"].as_table().expect("a table for the module");
+    assert_eq!(module["bytes"].as_integer(), Some(spirv::F32.len() as i64));
+}
+
+#[test]
+fn the_module_has_the_entry_points_that_the_host_calls() {
+    let module = Module::from_bytes("committed", spirv::F32).expect("a module");
+    let mut names: Vec<&str> = module
+        .entry_points()
+        .iter()
+        .map(|entry| entry.name.as_str())
+        .collect();
+    names.sort_unstable();
+    assert_eq!(
+        names,
+        [
+            "find_surfaces",
+            "intersect_pairs",
+            "make_camera_rays",
+            "measure_layout",
+            "render",
+            "shade_hits",
+            "trace_rays"
+        ]
+    );
+    assert!(!module.needs_f64());
+}
+
+/// Every struct in the module that has several members must be one of the shared types, with
+/// the offsets that rustc gives it; and every array's stride must be a shared type's size.
+#[test]
+fn the_modules_offsets_are_the_hosts() {
+    let words: Vec<u32> = spirv::F32
+        .chunks_exact(4)
+        .map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]]))
+        .collect();
+    const MEMBER_DECORATE: u32 = 72;
+    const DECORATE: u32 = 71;
+    const OFFSET: u32 = 35;
+    const ARRAY_STRIDE: u32 = 6;
+    let mut structs: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
+    let mut strides = Vec::new();
+    let mut at = 5;
+    while at < words.len() {
+        let (count, opcode) = ((words[at] >> 16) as usize, words[at] & 0xffff);
+        match (opcode, &words[at + 1..at + count]) {
+            (MEMBER_DECORATE, [id, _member, OFFSET, offset]) => {
+                structs.entry(*id).or_default().push(*offset);
+            }
+            (DECORATE, [_, ARRAY_STRIDE, stride]) => strides.push(*stride),
+            _ => {}
+        }
+        at += count;
+    }
+
+    let value = layout_of_host();
+    let fields = |name: &str| -> Vec<u32> {
+        let prefix = format!("{name}.");
+        layout::NAMES
+            .iter()
+            .filter(|entry| entry.starts_with(&prefix))
+            .map(|entry| value[entry])
+            .collect()
+    };
+    // Padding is a member too, in the module.
+    let expected: Vec<Vec<u32>> = vec![
+        fields("Ray"),
+        fields("Hit"),
+        fields("Launch"),
+        with_padding(&fields("Camera"), 12),
+        with_padding(&fields("Material"), 12),
+    ];
+    let found: Vec<&Vec<u32>> = structs.values().filter(|offsets| offsets.len() > 1).collect();
+    assert!(!found.is_empty());
+    for offsets in &found {
+        assert!(expected.contains(offsets), "no shared type has the offsets {offsets:?}");
+    }
+    for offsets in &expected {
+        assert!(found.contains(&offsets), "the module has no struct with {offsets:?}");
+    }
+    let sizes: Vec<u32> = layout::NAMES
+        .iter()
+        .filter(|entry| entry.starts_with("size of "))
+        .map(|entry| value[entry])
+        .chain([size_of::<u32>() as u32])
+        .collect();
+    assert!(!strides.is_empty());
+    for stride in strides {
+        assert!(sizes.contains(&stride), "no shared type has {stride} bytes");
+    }
+}
+
+fn layout_of_host() -> BTreeMap<&'static str, u32> {
+    let mut table = vec![0; layout::COUNT];
+    layout::write(&mut table);
+    layout::NAMES.iter().copied().zip(table).collect()
+}
+
+/// Each field is followed by padding at its offset plus `size`.
+fn with_padding(offsets: &[u32], size: u32) -> Vec<u32> {
+    offsets
+        .iter()
+        .flat_map(|offset| [*offset, offset + size])
+        .collect()
+}
