@@ -87,7 +87,11 @@ fn manifest(kernel: &Path, modules: &Path) -> Result<String> {
         "# Written by the test `kernel_spirv`; read by build.rs. What the modules beside this file are made of.\n",
     );
     writeln!(text, "compiler = \"rust-gpu 0.11.0\"")?;
-    writeln!(text, "sources = \"{}\"", digest_sources(&kernel.join("src"))?)?;
+    writeln!(
+        text,
+        "sources = \"{}\"",
+        digest_sources(&kernel.join("src"))?
+    )?;
     let locked = workspace_lock(kernel)
         .map(|lock| locked_dependencies(&lock))
         .unwrap_or_default();
@@ -98,7 +102,11 @@ fn manifest(kernel: &Path, modules: &Path) -> Result<String> {
         writeln!(text, "file = \"{}\"", module.file())?;
         writeln!(text, "target = \"{}\"", module.target)?;
         writeln!(text, "bytes = {}", bytes.len())?;
-        writeln!(text, "sha256 = \"{}\"", hex(&hmac_sha256::Hash::hash(&bytes)))?;
+        writeln!(
+            text,
+            "sha256 = \"{}\"",
+            hex(&hmac_sha256::Hash::hash(&bytes))
+        )?;
     }
     Ok(text)
 }
@@ -142,7 +150,10 @@ fn workspace_lock(kernel: &Path) -> Option<String> {
     let is_ours = kernel.canonicalize().ok()? == root.join("kernel").canonicalize().ok()?;
     is_ours
         .then(|| {
-            println!("cargo::rerun-if-changed={}", root.join("Cargo.lock").display());
+            println!(
+                "cargo::rerun-if-changed={}",
+                root.join("Cargo.lock").display()
+            );
             fs::read_to_string(root.join("Cargo.lock")).ok()
         })
         .flatten()

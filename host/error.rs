@@ -65,7 +65,9 @@ pub enum Error {
     },
 
     /// A launch asks for more threads, workgroups or workgroup memory than the device has.
-    #[error("the launch of {kernel} does not fit {device}: {what} is {asked}, and the limit is {limit}")]
+    #[error(
+        "the launch of {kernel} does not fit {device}: {what} is {asked}, and the limit is {limit}"
+    )]
     LaunchLimits {
         /// The entry point.
         kernel: String,

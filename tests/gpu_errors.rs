@@ -12,7 +12,10 @@ use spherule::render::{QUIET, render};
 use spherule::{Error, Scene, kernel_module, wgpu};
 
 fn noop() -> Gpu {
-    open(&noop_adapter(wgpu::Features::empty()), GpuOptions::default())
+    open(
+        &noop_adapter(wgpu::Features::empty()),
+        GpuOptions::default(),
+    )
 }
 
 /// The message must name what and where, and the help must not be empty.
@@ -48,7 +51,8 @@ fn device_refused() {
         ..GpuOptions::default()
     };
     for adapter in all_adapters() {
-        let error = Gpu::from_adapter(adapter, options.clone()).expect_err("too much was asked for");
+        let error =
+            Gpu::from_adapter(adapter, options.clone()).expect_err("too much was asked for");
         assert!(matches!(error, Error::DeviceRefused { .. }), "{error:?}");
         assert_says(&error, &["max_compute_invocations_per_workgroup"]);
     }
@@ -90,7 +94,10 @@ fn modules_of_the_other_byte_order_are_read() {
         .flat_map(|word| [word[3], word[2], word[1], word[0]])
         .collect();
     let module = Module::from_bytes("swapped", &swapped).expect("a module");
-    assert_eq!(module.words(), kernel_module::f32().expect("the kernel").words());
+    assert_eq!(
+        module.words(),
+        kernel_module::f32().expect("the kernel").words()
+    );
 }
 
 #[test]
@@ -105,10 +112,14 @@ fn kernel_invalid_by_content() {
         }
         at += (words[at] >> 16) as usize;
     }
-    let module =
-        Module::from_bytes("nonsense", bytemuck::cast_slice(&words)).expect("the structure is sound");
+    let module = Module::from_bytes("nonsense", bytemuck::cast_slice(&words))
+        .expect("the structure is sound");
     let error = noop()
-        .kernel(&module, "trace_rays", &[Access::Read, Access::Read, Access::ReadWrite])
+        .kernel(
+            &module,
+            "trace_rays",
+            &[Access::Read, Access::Read, Access::ReadWrite],
+        )
         .expect_err("it is nonsense");
     assert!(matches!(error, Error::KernelInvalid { .. }), "{error:?}");
     assert_says(&error, &["nonsense/trace_rays"]);
@@ -153,9 +164,18 @@ fn buffer_too_large() {
             },
         );
         let spheres = vec![Sphere::default(); (1 << 12) + 1];
-        let error = gpu.upload("spheres", &spheres).expect_err("one sphere too many");
+        let error = gpu
+            .upload("spheres", &spheres)
+            .expect_err("one sphere too many");
         assert!(
-            matches!(error, Error::BufferTooLarge { needed: 65_552, limit: 65_536, .. }),
+            matches!(
+                error,
+                Error::BufferTooLarge {
+                    needed: 65_552,
+                    limit: 65_536,
+                    ..
+                }
+            ),
             "{error:?}"
         );
         assert_says(&error, &["spheres", "65552", "65536"]);
@@ -200,7 +220,14 @@ fn launch_limits() {
             .kernel(&module, "trace_rays", &bindings)
             .expect_err("64 threads do not fit 32");
         assert!(
-            matches!(error, Error::LaunchLimits { asked: 64, limit: 32, .. }),
+            matches!(
+                error,
+                Error::LaunchLimits {
+                    asked: 64,
+                    limit: 32,
+                    ..
+                }
+            ),
             "{error:?}"
         );
         assert_says(&error, &["trace_rays", "threads in a workgroup"]);

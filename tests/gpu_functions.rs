@@ -6,9 +6,7 @@ use common::{Random, gpus, skips, ulps};
 use glam::{UVec2, Vec3, Vec4};
 use spherule::device::{Access, Gpu};
 use spherule::kernel::shading::shade;
-use spherule::kernel::{
-    Camera, Hit, Launch, Material, Ray, Sphere, Surface, layout, nearest_hit,
-};
+use spherule::kernel::{Camera, Hit, Launch, Material, Ray, Sphere, Surface, layout, nearest_hit};
 use spherule::kernel_module;
 
 const COUNT: usize = 10_000;
@@ -63,8 +61,12 @@ fn run<T: bytemuck::Pod>(
     let kernel = gpu.kernel(&module, entry, &access).expect(entry);
     let mut bindings = inputs.to_vec();
     bindings.push(output.binding());
-    gpu.launch(&kernel, &bindings, kernel.workgroups_for([threads as u32, 1, 1]))
-        .expect(entry);
+    gpu.launch(
+        &kernel,
+        &bindings,
+        kernel.workgroups_for([threads as u32, 1, 1]),
+    )
+    .expect(entry);
     gpu.read(output).expect(entry)
 }
 
@@ -106,7 +108,10 @@ fn sphere_intersect_agrees() {
                 gpu.name()
             );
         }
-        assert!(hits > COUNT / 10, "{hits} hits are too few to tell anything");
+        assert!(
+            hits > COUNT / 10,
+            "{hits} hits are too few to tell anything"
+        );
     }
 }
 
@@ -122,7 +127,9 @@ fn nearest_hit_agrees() {
             if count == 0 {
                 continue;
             }
-            let output = gpu.upload("hits", &vec![Hit { t: -1.0, sphere: 7 }; COUNT]).expect("hits");
+            let output = gpu
+                .upload("hits", &vec![Hit { t: -1.0, sphere: 7 }; COUNT])
+                .expect("hits");
             let on_gpu = run(
                 gpu,
                 "trace_rays",
@@ -148,7 +155,11 @@ fn nearest_hit_agrees() {
                         .any(|sphere| is_grazing(ray, sphere) || starts_on_surface(ray, sphere))
                 })
                 .count();
-            assert!(differing <= excusable, "{}: {differing} of {excusable}", gpu.name());
+            assert!(
+                differing <= excusable,
+                "{}: {differing} of {excusable}",
+                gpu.name()
+            );
         }
     }
 }
@@ -169,7 +180,9 @@ fn surfaces_agree() {
             &[
                 gpu.upload("rays", &rays).expect("rays").binding(),
                 gpu.upload("spheres", &spheres).expect("spheres").binding(),
-                gpu.upload("parameters", &parameters).expect("parameters").binding(),
+                gpu.upload("parameters", &parameters)
+                    .expect("parameters")
+                    .binding(),
             ],
             &output,
             rays.len(),
@@ -177,8 +190,14 @@ fn surfaces_agree() {
         for (index, found) in on_gpu.chunks_exact(2).enumerate() {
             let expected = Surface::at(&rays[index], parameters[index], spheres[index]);
             let [point, normal] = [found[0].truncate(), found[1].truncate()];
-            assert!(point.distance(expected.point) <= 1e-5, "{point} {expected:?}");
-            assert!(normal.distance(expected.normal) <= 1e-4, "{normal} {expected:?}");
+            assert!(
+                point.distance(expected.point) <= 1e-5,
+                "{point} {expected:?}"
+            );
+            assert!(
+                normal.distance(expected.normal) <= 1e-4,
+                "{normal} {expected:?}"
+            );
             assert!((normal.length() - 1.0).abs() <= 1e-6);
         }
     }
@@ -205,8 +224,12 @@ fn shading_agrees_in_every_mode() {
             &[
                 gpu.upload("rays", &rays).expect("rays").binding(),
                 gpu.upload("spheres", &spheres).expect("spheres").binding(),
-                gpu.upload("parameters", &parameters).expect("parameters").binding(),
-                gpu.upload("materials", &materials).expect("materials").binding(),
+                gpu.upload("parameters", &parameters)
+                    .expect("parameters")
+                    .binding(),
+                gpu.upload("materials", &materials)
+                    .expect("materials")
+                    .binding(),
             ],
             &output,
             rays.len(),
@@ -252,7 +275,11 @@ fn camera_rays_agree() {
     let module = kernel_module::f32().expect("the kernel");
     for gpu in gpus() {
         let kernel = gpu
-            .kernel(&module, "make_camera_rays", &[Access::Uniform, Access::ReadWrite])
+            .kernel(
+                &module,
+                "make_camera_rays",
+                &[Access::Uniform, Access::ReadWrite],
+            )
             .expect("a kernel");
         let uniform = gpu.upload_uniform("launch", &launch).expect("a uniform");
         let output = gpu.zeroed::<Ray>("rays", count).expect("rays");
@@ -267,7 +294,10 @@ fn camera_rays_agree() {
             let expected = launch.camera.pixel_ray(pixel, size);
             assert_eq!(ray.origin, expected.origin);
             assert_eq!((ray.t_min, ray.t_max), (expected.t_min, expected.t_max));
-            assert!(ray.direction.distance(expected.direction) <= 1e-6, "{ray:?} {expected:?}");
+            assert!(
+                ray.direction.distance(expected.direction) <= 1e-6,
+                "{ray:?} {expected:?}"
+            );
         }
     }
 }

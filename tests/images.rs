@@ -78,7 +78,10 @@ fn reference(name: &str, image: &Image) -> Vec<u8> {
     }
     let reference = image::open(&path)
         .unwrap_or_else(|error| {
-            panic!("{}: {error}; SPHERULE_RENEW_REFERENCES=1 writes it", path.display())
+            panic!(
+                "{}: {error}; SPHERULE_RENEW_REFERENCES=1 writes it",
+                path.display()
+            )
         })
         .to_rgb8();
     assert_eq!(reference.dimensions(), (image.width(), image.height()));
@@ -93,9 +96,17 @@ fn figures() -> Vec<(&'static str, Scene, Shading)> {
     vec![
         ("red-sphere.png", one_sphere(sphere, 160, 90), Shading::Flat),
         ("normals.png", one_sphere(sphere, 160, 90), Shading::Normals),
-        ("two-spheres-normals.png", two_spheres(160, 90), Shading::Normals),
+        (
+            "two-spheres-normals.png",
+            two_spheres(160, 90),
+            Shading::Normals,
+        ),
         ("two-spheres-lit.png", two_spheres(160, 90), Shading::Lit),
-        ("two-spheres-depth.png", two_spheres(160, 90), Shading::Depth),
+        (
+            "two-spheres-depth.png",
+            two_spheres(160, 90),
+            Shading::Depth,
+        ),
         ("crambin.png", crambin, Shading::Lit),
     ]
 }
@@ -134,7 +145,8 @@ fn wrong_figures_do_not_match() {
         let sphere = &mut moved.world.spheres[0];
         // A pixel, at the distance of the first sphere.
         let depth = (sphere.center() - view.eye).length();
-        let pixel = 2.0 * (0.5 * view.vertical_fov.to_radians()).tan() as f32 * depth / scene.height as f32;
+        let pixel =
+            2.0 * (0.5 * view.vertical_fov.to_radians()).tan() as f32 * depth / scene.height as f32;
         *sphere = Sphere::new(sphere.center() + Vec3::X * pixel, sphere.radius());
         moved.view = Some(view);
         // In a molecule one atom is a few pixels of thousands, and may be hidden; there all move.
@@ -167,14 +179,21 @@ fn cpu_and_gpu_agree_within_the_stated_tolerance() {
     if skips("cpu_and_gpu_agree_within_the_stated_tolerance") {
         return;
     }
-    for shading in [Shading::Lit, Shading::Normals, Shading::Depth, Shading::Flat] {
+    for shading in [
+        Shading::Lit,
+        Shading::Normals,
+        Shading::Depth,
+        Shading::Flat,
+    ] {
         for (width, height) in [(640, 360), (17, 13), (1, 1), (1920, 1), (1, 300)] {
             let scene = two_spheres(width, height);
             let cpu = on_cpu(&scene, shading);
             for gpu in on_gpus(&scene, shading) {
-                let compared =
-                    Comparison::of(&cpu, &gpu, Tolerance::default()).expect("same size");
-                assert!(compared.is_within(), "{shading:?} {width}x{height}: {compared:?}");
+                let compared = Comparison::of(&cpu, &gpu, Tolerance::default()).expect("same size");
+                assert!(
+                    compared.is_within(),
+                    "{shading:?} {width}x{height}: {compared:?}"
+                );
             }
         }
     }
@@ -304,17 +323,31 @@ fn every_pixel_is_written() {
             gpu.launch(
                 &kernel,
                 &[
-                    gpu.upload_uniform("launch", &launch).expect("launch").binding(),
-                    gpu.upload("spheres", &world.spheres).expect("spheres").binding(),
-                    gpu.upload("ids", &world.material_ids).expect("ids").binding(),
-                    gpu.upload("materials", &world.materials).expect("materials").binding(),
+                    gpu.upload_uniform("launch", &launch)
+                        .expect("launch")
+                        .binding(),
+                    gpu.upload("spheres", &world.spheres)
+                        .expect("spheres")
+                        .binding(),
+                    gpu.upload("ids", &world.material_ids)
+                        .expect("ids")
+                        .binding(),
+                    gpu.upload("materials", &world.materials)
+                        .expect("materials")
+                        .binding(),
                     pixels.binding(),
                 ],
                 kernel.workgroups_for([width, height, 1]),
             )
             .expect("a launch");
             let pixels = gpu.read(&pixels).expect("pixels");
-            assert_eq!(pixels[..count].iter().filter(|pixel| **pixel == sentinel).count(), 0);
+            assert_eq!(
+                pixels[..count]
+                    .iter()
+                    .filter(|pixel| **pixel == sentinel)
+                    .count(),
+                0
+            );
             assert_eq!(pixels[count], sentinel);
         }
     }
@@ -334,7 +367,10 @@ fn a_spheres_silhouette_has_its_area() {
             // Gauss's circle problem: the count is off by about R^(2/3), and never seen beyond
             // four times that.
             let tolerance = 4.0 * pixels.powf(2.0 / 3.0);
-            assert!((hits as f64 - area).abs() <= tolerance, "{hits} {area} ± {tolerance}");
+            assert!(
+                (hits as f64 - area).abs() <= tolerance,
+                "{hits} {area} ± {tolerance}"
+            );
         }
     }
 }
@@ -349,8 +385,15 @@ fn the_normal_at_the_centre_faces_the_camera() {
             for (channel, expected) in [128_u8, 128, 255].iter().enumerate() {
                 let found = rgb[3 * centre + channel];
                 // An even-sized image has no pixel at its very centre.
-                let slack = if size.0 % 2 == 1 || size.0 > 1000 { 1 } else { 8 };
-                assert!(found.abs_diff(*expected) <= slack, "{size:?}: channel {channel} is {found}");
+                let slack = if size.0 % 2 == 1 || size.0 > 1000 {
+                    1
+                } else {
+                    8
+                };
+                assert!(
+                    found.abs_diff(*expected) <= slack,
+                    "{size:?}: channel {channel} is {found}"
+                );
             }
         }
     }
@@ -367,7 +410,7 @@ fn the_horizon_is_where_rays_touch_the_ground() {
     for image in all_paths(&scene, Shading::Flat) {
         // Columns that the small sphere does not cover.
         for column in [0_u32, 100, 400, 900, 1279] {
-            let x = (2 * column + 1) as f64 / 1280.0 - 1.0;
+            let x = f64::from(2 * column + 1) / 1280.0 - 1.0;
             let forward = camera.forward.as_dvec3() + camera.right.as_dvec3() * x;
             let up = camera.up.as_dvec3();
             // (c·d)² = d·d (c·c − r²) with d = forward + y·up, a quadratic in y.
@@ -400,7 +443,10 @@ fn misses_are_left_untouched_and_hits_have_depth() {
     scene.background = Vec3::new(0.25, 0.5, 0.75);
     for image in all_paths(&scene, Shading::Flat) {
         let corner = image.pixel(0, 0).expect("a pixel");
-        assert_eq!((corner.color(), corner.depth()), (scene.background, Hit::NONE_T));
+        assert_eq!(
+            (corner.color(), corner.depth()),
+            (scene.background, Hit::NONE_T)
+        );
         let centre = image.pixel(16, 16).expect("a pixel");
         assert_eq!((centre.color(), centre.depth()), (Vec3::X, 2.5));
         assert!(image.pixel(33, 0).is_none());

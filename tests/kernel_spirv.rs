@@ -18,7 +18,8 @@ fn committed_modules_are_the_output_of_the_sources() {
     for file in ["f32.spv", "manifest.toml"] {
         let fresh = std::fs::read(compiled.join(file)).expect("the build script wrote it");
         if std::env::var_os("SPHERULE_RENEW_KERNEL").is_some_and(|value| value != "0") {
-            std::fs::write(committed.join(file), &fresh).expect("the kernel's folder can be written");
+            std::fs::write(committed.join(file), &fresh)
+                .expect("the kernel's folder can be written");
             continue;
         }
         let old = std::fs::read(committed.join(file)).unwrap_or_default();
@@ -104,13 +105,22 @@ fn the_modules_offsets_are_the_hosts() {
         with_padding(&fields("Camera"), 12),
         with_padding(&fields("Material"), 12),
     ];
-    let found: Vec<&Vec<u32>> = structs.values().filter(|offsets| offsets.len() > 1).collect();
+    let found: Vec<&Vec<u32>> = structs
+        .values()
+        .filter(|offsets| offsets.len() > 1)
+        .collect();
     assert!(!found.is_empty());
     for offsets in &found {
-        assert!(expected.contains(offsets), "no shared type has the offsets {offsets:?}");
+        assert!(
+            expected.contains(offsets),
+            "no shared type has the offsets {offsets:?}"
+        );
     }
     for offsets in &expected {
-        assert!(found.contains(&offsets), "the module has no struct with {offsets:?}");
+        assert!(
+            found.contains(&offsets),
+            "the module has no struct with {offsets:?}"
+        );
     }
     let sizes: Vec<u32> = layout::NAMES
         .iter()

@@ -28,8 +28,10 @@ pub(super) enum Command {
 }
 
 #[derive(Debug, Args)]
-#[command(after_help = "Exit codes: 0 done, 1 the render or the check failed, 2 the input is wrong.\n\
-    SPHERULE_LOG=debug logs what happens; RAYON_NUM_THREADS=N limits the CPU's threads.")]
+#[command(
+    after_help = "Exit codes: 0 done, 1 the render or the check failed, 2 the input is wrong.\n\
+    SPHERULE_LOG=debug logs what happens; RAYON_NUM_THREADS=N limits the CPU's threads."
+)]
 pub(super) struct RenderArguments {
     /// The scene (.toml) or molecule (.pdb, .ent, .xyz)
     pub(super) input: PathBuf,
@@ -117,7 +119,9 @@ impl FromStr for Size {
                 })
             })
             .ok_or_else(|| {
-                format!("give width and height, each from 1 to {MAX_IMAGE_SIDE}, for example 1280x720")
+                format!(
+                    "give width and height, each from 1 to {MAX_IMAGE_SIDE}, for example 1280x720"
+                )
             })
     }
 }
@@ -142,7 +146,13 @@ mod tests {
 
     #[test]
     fn sizes_are_read_or_refused() {
-        assert_eq!("17x13".parse(), Ok(Size { width: 17, height: 13 }));
+        assert_eq!(
+            "17x13".parse(),
+            Ok(Size {
+                width: 17,
+                height: 13
+            })
+        );
         for bad in ["", "17", "17x", "0x1", "1x70000", "-1x1", "1.5x1", "axb"] {
             assert!(bad.parse::<Size>().is_err(), "{bad}");
         }

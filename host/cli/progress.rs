@@ -31,7 +31,8 @@ impl Bar {
             return;
         }
         let bar = self.bar.get_or_init(|| {
-            let style = ProgressStyle::with_template("rendering {bar:32} {percent:>3} %  {eta} left");
+            let style =
+                ProgressStyle::with_template("rendering {bar:32} {percent:>3} %  {eta} left");
             ProgressBar::new(STEPS)
                 .with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
         });

@@ -81,7 +81,9 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<ExitCode> {
     let total = started.elapsed();
 
     if let Some((near, far)) = image.depth_range() {
-        say(&format!("depth from {near} (white) to {far} (black) scene units"));
+        say(&format!(
+            "depth from {near} (white) to {far} (black) scene units"
+        ));
     }
     say(&format!(
         "wrote {}: {} × {} pixels, {} spheres, {}",
@@ -159,7 +161,11 @@ fn check(
         print(&format!(
             "{}: against {}, largest difference {:.2}/255, mean {:.5}/255, {} of {} pixels off by more than {}/255 \
              ({:.1} % may be)\n",
-            if passed { "check passed" } else { "CHECK FAILED" },
+            if passed {
+                "check passed"
+            } else {
+                "CHECK FAILED"
+            },
             other.name(),
             comparison.largest,
             comparison.mean,
@@ -182,7 +188,8 @@ fn write_stats(path: &Path, stats: &Stats) -> Result<()> {
         reason,
         help: "check that the directory exists and may be written".into(),
     };
-    let text = serde_json::to_string_pretty(stats).map_err(|error| failed(error.to_string()))? + "\n";
+    let text =
+        serde_json::to_string_pretty(stats).map_err(|error| failed(error.to_string()))? + "\n";
     if path == Path::new("-") {
         print(&text);
         return Ok(());

@@ -87,7 +87,9 @@ impl AdapterReport {
                 wgpu::DeviceType::Other => "other",
             },
             api: info.backend.to_string().to_lowercase(),
-            driver: format!("{} {}", info.driver, info.driver_info).trim().into(),
+            driver: format!("{} {}", info.driver, info.driver_info)
+                .trim()
+                .into(),
             passthrough: takes_spirv(adapter),
             f64: features.contains(wgpu::Features::SHADER_F64),
             timestamps: features.contains(wgpu::Features::TIMESTAMP_QUERY),

@@ -204,7 +204,12 @@ impl Gpu {
     /// [`Error::KernelInvalid`] if there is no such entry point, the device lacks what the
     /// module needs, or the driver does not take it; [`Error::LaunchLimits`] if a workgroup has
     /// more threads than the device can run.
-    pub fn kernel(&self, module: &Module, entry_point: &str, bindings: &[Access]) -> Result<Kernel> {
+    pub fn kernel(
+        &self,
+        module: &Module,
+        entry_point: &str,
+        bindings: &[Access],
+    ) -> Result<Kernel> {
         let invalid = |reason: String| Error::KernelInvalid {
             kernel: format!("{}/{entry_point}", module.name()),
             reason,
@@ -219,10 +224,16 @@ impl Gpu {
                     .iter()
                     .map(|entry| entry.name.as_str())
                     .collect();
-                invalid(format!("the module has no such entry point, it has {}", names.join(", ")))
+                invalid(format!(
+                    "the module has no such entry point, it has {}",
+                    names.join(", ")
+                ))
             })?;
         if module.needs_f64() && !self.device.features().contains(wgpu::Features::SHADER_F64) {
-            return Err(invalid(format!("it needs 64-bit floats, which {} lacks", self.name)));
+            return Err(invalid(format!(
+                "it needs 64-bit floats, which {} lacks",
+                self.name
+            )));
         }
         self.check_workgroup(entry_point, entry.workgroup_size)?;
 
@@ -230,13 +241,13 @@ impl Gpu {
         let made = self.watch.checked(&self.device, &during, || {
             let shader = self.shader_module(module);
             let layout = self.bind_group_layout(entry_point, bindings);
-            let pipeline_layout = self
-                .device
-                .create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-                    label: Some(entry_point),
-                    bind_group_layouts: &[Some(&layout)],
-                    immediate_size: 0,
-                });
+            let pipeline_layout =
+                self.device
+                    .create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+                        label: Some(entry_point),
+                        bind_group_layouts: &[Some(&layout)],
+                        immediate_size: 0,
+                    });
             let pipeline = self
                 .device
                 .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
@@ -266,10 +277,12 @@ impl Gpu {
 
     fn shader_module(&self, module: &Module) -> wgpu::ShaderModule {
         if !self.passthrough {
-            return self.device.create_shader_module(wgpu::ShaderModuleDescriptor {
-                label: Some(module.name()),
-                source: wgpu::ShaderSource::SpirV(Cow::Borrowed(module.words())),
-            });
+            return self
+                .device
+                .create_shader_module(wgpu::ShaderModuleDescriptor {
+                    label: Some(module.name()),
+                    source: wgpu::ShaderSource::SpirV(Cow::Borrowed(module.words())),
+                });
         }
         let entry_points = module
             .entry_points()
@@ -335,7 +348,11 @@ impl Gpu {
     ///
     /// As [`Gpu::upload`].
     pub fn upload_uniform<T: Pod>(&self, label: &str, value: &T) -> Result<Buffer<T>> {
-        self.filled(label, std::slice::from_ref(value), wgpu::BufferUsages::UNIFORM)
+        self.filled(
+            label,
+            std::slice::from_ref(value),
+            wgpu::BufferUsages::UNIFORM,
+        )
     }
 
     /// Overwrites a uniform.
@@ -576,11 +593,25 @@ impl Gpu {
 
     fn check_workgroup(&self, kernel: &str, size: [u32; 3]) -> Result<()> {
         let limits = self.device.limits();
-        let threads = size.iter().fold(1_u32, |product, side| product.saturating_mul(*side));
+        let threads = size
+            .iter()
+            .fold(1_u32, |product, side| product.saturating_mul(*side));
         let checks = [
-            ("the workgroup's size along x", size[0], limits.max_compute_workgroup_size_x),
-            ("the workgroup's size along y", size[1], limits.max_compute_workgroup_size_y),
-            ("the workgroup's size along z", size[2], limits.max_compute_workgroup_size_z),
+            (
+                "the workgroup's size along x",
+                size[0],
+                limits.max_compute_workgroup_size_x,
+            ),
+            (
+                "the workgroup's size along y",
+                size[1],
+                limits.max_compute_workgroup_size_y,
+            ),
+            (
+                "the workgroup's size along z",
+                size[2],
+                limits.max_compute_workgroup_size_z,
+            ),
             (
                 "the number of threads in a workgroup",
                 threads,

@@ -65,7 +65,7 @@ impl Module {
             kernel: name.into(),
             reason,
         };
-        if bytes.len() % 4 != 0 || bytes.len() < 4 * HEADER_WORDS {
+        if !bytes.len().is_multiple_of(4) || bytes.len() < 4 * HEADER_WORDS {
             return Err(invalid(format!(
                 "{} bytes are not a whole number of 32-bit words with a header",
                 bytes.len()
@@ -89,14 +89,18 @@ impl Module {
         let mut needs_f64 = false;
         let mut last_opcode = 0;
         for instruction in Instructions::of(&words) {
-            let (at, opcode, operands) =
-                instruction.map_err(|at| invalid(format!("the instruction at word {at} does not fit the module")))?;
+            let (at, opcode, operands) = instruction.map_err(|at| {
+                invalid(format!(
+                    "the instruction at word {at} does not fit the module"
+                ))
+            })?;
             last_opcode = opcode;
             match (opcode, operands) {
                 (op::CAPABILITY, [op::CAPABILITY_FLOAT64]) => needs_f64 = true,
                 (op::ENTRY_POINT, [op::MODEL_GL_COMPUTE, function, name @ ..]) => {
-                    let name = literal_string(name)
-                        .ok_or_else(|| invalid(format!("the entry point at word {at} has no name")))?;
+                    let name = literal_string(name).ok_or_else(|| {
+                        invalid(format!("the entry point at word {at} has no name"))
+                    })?;
                     entries.push((
                         *function,
                         EntryPoint {
@@ -126,7 +130,10 @@ impl Module {
             .iter()
             .find(|entry| entry.workgroup_size.contains(&0))
         {
-            return Err(invalid(format!("its entry point {} has no workgroup size", entry.name)));
+            return Err(invalid(format!(
+                "its entry point {} has no workgroup size",
+                entry.name
+            )));
         }
         Ok(Self {
             name: name.into(),

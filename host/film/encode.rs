@@ -113,7 +113,10 @@ mod tests {
         let half = Vec3::splat(0.5);
         assert_eq!(one_pixel(Shading::Lit, half, 1.0), [188, 188, 188]);
         assert_eq!(one_pixel(Shading::Normals, half, 1.0), [128, 128, 128]);
-        assert_eq!(one_pixel(Shading::Normals, half, Hit::NONE_T), [188, 188, 188]);
+        assert_eq!(
+            one_pixel(Shading::Normals, half, Hit::NONE_T),
+            [188, 188, 188]
+        );
         assert_eq!(one_pixel(Shading::Flat, Vec3::X, 1.0), [255, 0, 0]);
     }
 

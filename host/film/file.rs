@@ -73,10 +73,15 @@ impl Image {
         let mut file = builder.tempfile_in(directory).map_err(cannot_write)?;
         {
             let mut writer = BufWriter::with_capacity(1 << 20, file.as_file_mut());
-            self.encode_as(format, &mut writer).map_err(|error| match error {
-                image::ImageError::IoError(error) => cannot_write(error),
-                other => failed(path, format!("cannot be encoded: {other}"), "try another size or format"),
-            })?;
+            self.encode_as(format, &mut writer)
+                .map_err(|error| match error {
+                    image::ImageError::IoError(error) => cannot_write(error),
+                    other => failed(
+                        path,
+                        format!("cannot be encoded: {other}"),
+                        "try another size or format",
+                    ),
+                })?;
             writer.flush().map_err(cannot_write)?;
         }
         file.persist(path)
@@ -86,12 +91,15 @@ impl Image {
 
     fn encode_as(&self, format: Format, writer: &mut impl Write) -> image::ImageResult<()> {
         match format {
-            Format::Png => PngEncoder::new_with_quality(
-                writer,
-                CompressionType::Fast,
-                FilterType::Adaptive,
-            )
-            .write_image(&self.to_rgb8(), self.width, self.height, ExtendedColorType::Rgb8),
+            Format::Png => {
+                PngEncoder::new_with_quality(writer, CompressionType::Fast, FilterType::Adaptive)
+                    .write_image(
+                        &self.to_rgb8(),
+                        self.width,
+                        self.height,
+                        ExtendedColorType::Rgb8,
+                    )
+            }
             Format::Exr => {
                 let floats: Vec<f32> = self
                     .pixels

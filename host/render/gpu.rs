@@ -171,7 +171,10 @@ fn check_written(gpu: &Gpu, pixels: &[Pixel]) -> Result<()> {
     Err(Error::Readback {
         what: "the image".into(),
         device: gpu.name().into(),
-        reason: format!("{missing} of {} threads of {ENTRY} wrote no pixel", pixels.len()),
+        reason: format!(
+            "{missing} of {} threads of {ENTRY} wrote no pixel",
+            pixels.len()
+        ),
     })
 }
 

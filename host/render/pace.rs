@@ -90,7 +90,12 @@ mod tests {
             let mut covered = 0;
             let (mut x, mut y) = (0, 0);
             while y < height {
-                let tile = pace.tile(width, UVec2::new(width - x, height - y), max_pixels, spheres);
+                let tile = pace.tile(
+                    width,
+                    UVec2::new(width - x, height - y),
+                    max_pixels,
+                    spheres,
+                );
                 let pixels = u64::from(tile.x) * u64::from(tile.y);
                 assert!(pixels >= 1 && pixels <= max_pixels);
                 assert!(x + tile.x <= width && y + tile.y <= height);

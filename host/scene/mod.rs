@@ -66,9 +66,7 @@ impl Scene {
         let path = path.as_ref();
         match extension(path).as_str() {
             "toml" => toml_file::load(path),
-            extension if molecule::is_molecule(extension) => {
-                Ok(Self::new(molecule::load(path)?))
-            }
+            extension if molecule::is_molecule(extension) => Ok(Self::new(molecule::load(path)?)),
             _ => Err(Error::Scene(SceneError::without_place(
                 path,
                 format!("{}: not a kind of file that spherule reads", path.display()),

@@ -192,7 +192,10 @@ impl Reader<'_> {
             return Err(self
                 .wrong(
                     file,
-                    format!("{}: not a kind of particle file that spherule reads", file.get_ref()),
+                    format!(
+                        "{}: not a kind of particle file that spherule reads",
+                        file.get_ref()
+                    ),
                     "unknown kind",
                     "give a .pdb, .ent or .xyz file",
                 )
@@ -223,7 +226,10 @@ impl Reader<'_> {
                     return Err(self
                         .wrong(
                             fov,
-                            format!("a vertical_fov of {} degrees is not possible", fov.get_ref()),
+                            format!(
+                                "a vertical_fov of {} degrees is not possible",
+                                fov.get_ref()
+                            ),
                             "out of range",
                             "give an angle in degrees above 0 and below 180, for example 40",
                         )
@@ -407,12 +413,32 @@ radius = 100
             ("[0, 0.5, 1]", "[0, -0.5, 1]", 5, "below zero"),
             ("[0, 0.5, 1]", "[0, 0.5]", 5, "invalid length"),
             ("[camera]", "[lens]", 7, "unknown field"),
-            ("eye = [0, 0, 0]", "eye = [0, nan, 0]", 8, "eye is not finite"),
-            ("eye = [0, 0, 0]", "eye = [0, inf, 0]", 8, "eye is not finite"),
-            ("eye = [0, 0, 0]", "eye = [0, 1e39, 0]", 8, "eye is not finite"),
+            (
+                "eye = [0, 0, 0]",
+                "eye = [0, nan, 0]",
+                8,
+                "eye is not finite",
+            ),
+            (
+                "eye = [0, 0, 0]",
+                "eye = [0, inf, 0]",
+                8,
+                "eye is not finite",
+            ),
+            (
+                "eye = [0, 0, 0]",
+                "eye = [0, 1e39, 0]",
+                8,
+                "eye is not finite",
+            ),
             ("eye = [0, 0, 0]", "", 7, "missing field `eye`"),
             ("target = [0, 0, -1]", "target = [0, 0, 0]", 9, "same point"),
-            ("target = [0, 0, -1]", "target = [0, 9, 0]", 7, "along the view"),
+            (
+                "target = [0, 0, -1]",
+                "target = [0, 9, 0]",
+                7,
+                "along the view",
+            ),
             ("vertical_fov = 90", "vertical_fov = 180", 10, "180 degrees"),
             ("vertical_fov = 90", "vertical_fov = nan", 10, "NaN degrees"),
             ("\"diffuse\"", "\"mirror\"", 13, "unknown variant"),
@@ -422,10 +448,30 @@ radius = 100
             ("radius = 0.5", "radius = nan", 18, "radius of NaN"),
             ("radius = 0.5", "radius = 1e-60", 18, "radius of 0.000"),
             ("radius = 0.5", "radius = \"0.5\"", 18, "invalid type"),
-            ("material = \"red\"", "material = \"blue\"", 19, "no material \"blue\""),
-            ("radius = 100", "radius = 100\n[particles]\nfile = \"no.pdb\"", 25, "no such file"),
-            ("radius = 100", "radius = 100\n[particles]\nfile = \"no.gro\"", 25, "not a kind"),
-            ("radius = 100", "radius = 100\nradius = 1", 24, "duplicate key"),
+            (
+                "material = \"red\"",
+                "material = \"blue\"",
+                19,
+                "no material \"blue\"",
+            ),
+            (
+                "radius = 100",
+                "radius = 100\n[particles]\nfile = \"no.pdb\"",
+                25,
+                "no such file",
+            ),
+            (
+                "radius = 100",
+                "radius = 100\n[particles]\nfile = \"no.gro\"",
+                25,
+                "not a kind",
+            ),
+            (
+                "radius = 100",
+                "radius = 100\nradius = 1",
+                24,
+                "duplicate key",
+            ),
         ];
         for (good, bad, line, word) in cases {
             assert!(GOOD.contains(good), "{good}");

@@ -59,7 +59,8 @@ impl View {
                 vertical_fov: fov,
             };
         }
-        let middle = middle_z(spheres).min(distance_to_origin - 1e-3 * distance_to_origin.abs().max(1e-3));
+        let middle =
+            middle_z(spheres).min(distance_to_origin - 1e-3 * distance_to_origin.abs().max(1e-3));
         Self {
             eye: eye.as_vec3(),
             target: DVec3::new(across, upward, middle).as_vec3(),
@@ -129,14 +130,20 @@ mod tests {
         for aspect in [0.3, 1.0, 16.0 / 9.0] {
             let view = View::framing(&spheres, aspect);
             let camera = view.camera(aspect).expect("a camera");
-            assert!(spheres.iter().all(|s| is_inside(&camera, s, 0.0)), "{view:?}");
+            assert!(
+                spheres.iter().all(|s| is_inside(&camera, s, 0.0)),
+                "{view:?}"
+            );
             // A tenth nearer, something sticks out.
             let nearer = View {
                 eye: view.eye + (view.target - view.eye) * 0.2,
                 ..view
             };
             let camera = nearer.camera(aspect).expect("a camera");
-            assert!(!spheres.iter().all(|s| is_inside(&camera, s, 0.0)), "{nearer:?}");
+            assert!(
+                !spheres.iter().all(|s| is_inside(&camera, s, 0.0)),
+                "{nearer:?}"
+            );
         }
     }
 

@@ -137,8 +137,6 @@ pub fn shade_hits(
 
 /// Writes the layout of the shared types as this compiler sees it.
 #[spirv(compute(threads(1), entry_point_name = "measure_layout"))]
-pub fn measure_layout(
-    #[spirv(storage_buffer, descriptor_set = 0, binding = 0)] table: &mut [u32],
-) {
+pub fn measure_layout(#[spirv(storage_buffer, descriptor_set = 0, binding = 0)] table: &mut [u32]) {
     layout::write(table);
 }

@@ -29,7 +29,12 @@ pub fn all_adapters() -> &'static [wgpu::Adapter] {
 /// Every adapter of this machine, opened with SPIR-V going straight to the driver.
 pub fn gpus() -> &'static [Gpu] {
     static GPUS: OnceLock<Vec<Gpu>> = OnceLock::new();
-    GPUS.get_or_init(|| all_adapters().iter().map(|adapter| open(adapter, GpuOptions::default())).collect())
+    GPUS.get_or_init(|| {
+        all_adapters()
+            .iter()
+            .map(|adapter| open(adapter, GpuOptions::default()))
+            .collect()
+    })
 }
 
 pub fn open(adapter: &wgpu::Adapter, options: GpuOptions) -> Gpu {
@@ -44,7 +49,9 @@ pub fn skips(test: &str) -> bool {
             std::env::var_os("SPHERULE_REQUIRE_GPU").is_none_or(|value| value == "0"),
             "{test}: SPHERULE_REQUIRE_GPU is set and there is no adapter"
         );
-        eprintln!("SKIPPED {test}: there is no GPU adapter; Debian's mesa-vulkan-drivers brings a software one");
+        eprintln!(
+            "SKIPPED {test}: there is no GPU adapter; Debian's mesa-vulkan-drivers brings a software one"
+        );
     }
     none
 }
@@ -107,7 +114,11 @@ impl Random {
 pub fn ulps(a: f32, b: f32) -> u64 {
     let key = |x: f32| {
         let bits = i64::from(x.to_bits());
-        if bits < 1 << 31 { bits } else { (1 << 31) - bits }
+        if bits < 1 << 31 {
+            bits
+        } else {
+            (1 << 31) - bits
+        }
     };
     key(a).abs_diff(key(b))
 }

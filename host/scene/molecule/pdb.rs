@@ -12,7 +12,8 @@
 //!
 //! Only what makes a picture is read: of several models the first, of alternate locations the
 //! one that its residue names first. Serial numbers, occupancies and unknown records are
-//! ignored, because real files put all sorts of things there.
+//! ignored, because real files put all sorts of things there. A file that starts as an entry of
+//! the Data Bank must end as one, with `END`.
 
 use std::collections::HashMap;
 
@@ -31,6 +32,7 @@ pub fn parse(text: &str) -> Result<Vec<Atom>, WrongLine> {
     let mut entry_id = "";
     let mut first_location: HashMap<&[u8], u8> = HashMap::new();
     let mut last_line = 0;
+    let mut is_ended = false;
     for (number, line) in text.lines().enumerate() {
         last_line = number;
         let line = Columns(line.as_bytes());
@@ -40,19 +42,28 @@ pub fn parse(text: &str) -> Result<Vec<Atom>, WrongLine> {
                 let position = position(&line, number)?;
                 let location = line.byte(17);
                 let is_first = location == b' '
-                    || *first_location
-                        .entry(line.bytes(22, 27))
-                        .or_insert(location)
-                        == location;
+                    || *first_location.entry(line.bytes(22, 27)).or_insert(location) == location;
                 if is_first {
                     let element = element(&line, entry_id).unwrap_or(&elements::UNKNOWN);
                     atoms.push(Atom { position, element });
                 }
             }
-            "ENDMDL" | "END" => break,
+            "ENDMDL" | "END" => {
+                is_ended = true;
+                break;
+            }
             "MODEL" if !atoms.is_empty() => break,
             _ => {}
         }
+    }
+    // Programs write files without an END; the Data Bank, whose files have a HEADER, does not.
+    if !entry_id.is_empty() && !is_ended {
+        return Err(WrongLine::new(
+            last_line,
+            "the entry stops before its END record",
+            "end of the file",
+            "the file is truncated: get it again, or, if it is meant to end here, add a line END",
+        ));
     }
     if atoms.is_empty() {
         return Err(WrongLine::new(
@@ -104,9 +115,9 @@ fn element(line: &Columns<'_>, entry_id: &str) -> Option<&'static Element> {
     // are an element and a place in the residue (CD: delta carbon, HG: gamma hydrogen), or a
     // place and an element (AC1 and NP of a nucleotide).
     const TWO_LETTERS: &[&str] = &[
-        "AL", "AS", "AG", "AU", "BA", "BE", "BR", "CA", "CD", "CL", "CO", "CR", "CS", "CU", "FE", "GA", "HG", "IN",
-        "KR", "LI", "MG", "MN", "MO", "NA", "NI", "PB", "PD", "PT", "RB", "RE", "RH", "RU", "SE", "SI", "SM", "SR",
-        "TE", "TI", "TL", "XE", "YB", "ZN", "ZR",
+        "AL", "AS", "AG", "AU", "BA", "BE", "BR", "CA", "CD", "CL", "CO", "CR", "CS", "CU", "FE",
+        "GA", "HG", "IN", "KR", "LI", "MG", "MN", "MO", "NA", "NI", "PB", "PD", "PT", "RB", "RE",
+        "RH", "RU", "SE", "SI", "SM", "SR", "TE", "TI", "TL", "XE", "YB", "ZN", "ZR",
     ];
     let name = line.bytes(13, 14);
     let pair = line.text(13, 14);
@@ -186,10 +197,20 @@ mod tests {
     fn haemoglobin_agrees_with_its_own_electron_counts() {
         let atoms = parse(HAEMOGLOBIN).expect("haemoglobin");
         assert_eq!(atoms.len(), 4779);
-        let counts = ["C", "N", "O", "S", "FE", "P"]
-            .map(|symbol| atoms.iter().filter(|a| a.element.symbol.eq_ignore_ascii_case(symbol)).count());
+        let counts = ["C", "N", "O", "S", "FE", "P"].map(|symbol| {
+            atoms
+                .iter()
+                .filter(|a| a.element.symbol.eq_ignore_ascii_case(symbol))
+                .count()
+        });
         assert_eq!(counts, [2954, 780, 1027, 12, 4, 2]);
-        let electrons = [("C", "6.00"), ("N", "7.00"), ("O", "8.00"), ("S", "16.00"), ("Fe", "24.00")];
+        let electrons = [
+            ("C", "6.00"),
+            ("N", "7.00"),
+            ("O", "8.00"),
+            ("S", "16.00"),
+            ("Fe", "24.00"),
+        ];
         let lines = HAEMOGLOBIN
             .lines()
             .filter(|line| line.starts_with("ATOM") || line.starts_with("HETATM"));
@@ -210,19 +231,58 @@ mod tests {
     #[test]
     fn names_tell_the_element_where_its_columns_do_not() {
         let cases = [
-            ("ATOM      1  CA  GLY A   1       0.000   0.000   0.000", "C"),
-            ("ATOM      1  CD1 LEU A   1       0.000   0.000   0.000", "C"),
-            ("ATOM      1 HG11 VAL A   1       0.000   0.000   0.000", "H"),
-            ("ATOM      1 1HB  ALA A   1       0.000   0.000   0.000", "H"),
-            ("HETATM    1 CA    CA A   1       0.000   0.000   0.000", "Ca"),
-            ("HETATM    1 FE   HEM A   1       0.000   0.000   0.000", "Fe"),
-            ("HETATM    1  NA  HEM A   1       0.000   0.000   0.000", "N"),
-            ("HETATM    1 AC1* NAD A   1       0.000   0.000   0.000", "C"),
-            ("HETATM    1 NP   NAD A   1       0.000   0.000   0.000", "P"),
-            ("ATOM      1 SE   MSE A   1       0.000   0.000   0.000", "Se"),
-            ("HETATM    1 ZN    ZN A   1       0.000   0.000   0.000  1.00  0.00          ZN", "Zn"),
-            ("ATOM      1  CA  GLY A   1       0.000   0.000   0.000  1.00  0.00           c", "C"),
-            ("ATOM      1  QQ  UNK A   1       0.000   0.000   0.000", "?"),
+            (
+                "ATOM      1  CA  GLY A   1       0.000   0.000   0.000",
+                "C",
+            ),
+            (
+                "ATOM      1  CD1 LEU A   1       0.000   0.000   0.000",
+                "C",
+            ),
+            (
+                "ATOM      1 HG11 VAL A   1       0.000   0.000   0.000",
+                "H",
+            ),
+            (
+                "ATOM      1 1HB  ALA A   1       0.000   0.000   0.000",
+                "H",
+            ),
+            (
+                "HETATM    1 CA    CA A   1       0.000   0.000   0.000",
+                "Ca",
+            ),
+            (
+                "HETATM    1 FE   HEM A   1       0.000   0.000   0.000",
+                "Fe",
+            ),
+            (
+                "HETATM    1  NA  HEM A   1       0.000   0.000   0.000",
+                "N",
+            ),
+            (
+                "HETATM    1 AC1* NAD A   1       0.000   0.000   0.000",
+                "C",
+            ),
+            (
+                "HETATM    1 NP   NAD A   1       0.000   0.000   0.000",
+                "P",
+            ),
+            (
+                "ATOM      1 SE   MSE A   1       0.000   0.000   0.000",
+                "Se",
+            ),
+            (
+                "HETATM    1 ZN    ZN A   1       0.000   0.000   0.000  1.00  0.00          ZN",
+                "Zn",
+            ),
+            (
+                "ATOM      1  CA  GLY A   1       0.000   0.000   0.000  1.00  0.00           c",
+                "C",
+            ),
+            (
+                "ATOM      1  QQ  UNK A   1       0.000   0.000   0.000",
+                "?",
+            ),
         ];
         for (line, symbol) in cases {
             assert_eq!(one(line).element.symbol, symbol, "{line}");

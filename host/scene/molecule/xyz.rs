@@ -27,11 +27,18 @@ pub fn parse(text: &str) -> Result<Vec<Atom>, WrongLine> {
         )
     })?;
     if count == 0 {
-        return Err(WrongLine::new(0, "the file has no atoms", "zero atoms", "give at least one atom"));
+        return Err(WrongLine::new(
+            0,
+            "the file has no atoms",
+            "zero atoms",
+            "give at least one atom",
+        ));
     }
     if let Some((_, comment)) = lines.next()
         && let Some(properties) = comment.split("Properties=").nth(1)
-        && !properties.trim_start_matches('"').starts_with("species:S:1:pos:R:3")
+        && !properties
+            .trim_start_matches('"')
+            .starts_with("species:S:1:pos:R:3")
     {
         return Err(WrongLine::new(
             1,
@@ -80,7 +87,12 @@ pub fn parse(text: &str) -> Result<Vec<Atom>, WrongLine> {
         tracing::warn!("{dummies} dummy atoms are left out");
     }
     if atoms.is_empty() {
-        return Err(WrongLine::new(0, "the file has dummy atoms only", "nothing to draw", "give at least one atom"));
+        return Err(WrongLine::new(
+            0,
+            "the file has dummy atoms only",
+            "nothing to draw",
+            "give at least one atom",
+        ));
     }
     Ok(atoms)
 }

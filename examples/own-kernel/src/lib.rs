@@ -1,0 +1,61 @@
+//! Runs a kernel of one's own through spherule's devices and errors: the free and the occupied
+//! room among spheres.
+
+pub use own_kernel_device::{Grid, Room, measure_room};
+use rayon::prelude::*;
+use spherule::device::{Access, Gpu, Module};
+use spherule::kernel::Sphere;
+
+/// This package's kernel, as its build script compiled it.
+static SPIRV: &[u8] = include_bytes!(env!("OWN_KERNEL_SPV"));
+
+/// What is at each point of the grid, found on a GPU.
+///
+/// # Errors
+///
+/// The device's errors.
+pub fn rooms_on_gpu(gpu: &Gpu, grid: &Grid, spheres: &[Sphere]) -> spherule::Result<Vec<Room>> {
+    let module = Module::from_bytes("own-kernel", SPIRV)?;
+    let kernel = gpu.kernel(
+        &module,
+        "measure_rooms",
+        &[Access::Uniform, Access::Read, Access::ReadWrite],
+    )?;
+    let count = grid.points_per_side.pow(3);
+    let rooms = gpu.zeroed::<Room>("rooms", count as usize)?;
+    gpu.launch(
+        &kernel,
+        &[
+            gpu.upload_uniform("grid", grid)?.binding(),
+            gpu.upload("spheres", spheres)?.binding(),
+            rooms.binding(),
+        ],
+        kernel.workgroups_for([count, 1, 1]),
+    )?;
+    gpu.read(&rooms)
+}
+
+/// The same on the CPU, through the same function.
+#[must_use]
+pub fn rooms_on_cpu(grid: &Grid, spheres: &[Sphere]) -> Vec<Room> {
+    (0..grid.points_per_side.pow(3))
+        .into_par_iter()
+        .map(|index| measure_room(grid.point(index), spheres))
+        .collect()
+}
+
+/// A cubic grid of `points_per_side` points a side that holds every sphere.
+#[must_use]
+pub fn grid_around(spheres: &[Sphere], points_per_side: u32) -> Grid {
+    let (mut low, mut high) = (spheres[0].center(), spheres[0].center());
+    for sphere in spheres {
+        low = low.min(sphere.center() - sphere.radius());
+        high = high.max(sphere.center() + sphere.radius());
+    }
+    Grid {
+        origin: low,
+        spacing: (high - low).max_element() / (points_per_side - 1) as f32,
+        points_per_side,
+        padding: [0; 3],
+    }
+}

@@ -1,0 +1,380 @@
+//! The command line as a user meets it: outputs, messages, exit codes.
+
+mod common;
+
+use std::path::Path;
+
+use assert_cmd::Command;
+use common::skips;
+use predicates::prelude::*;
+use predicates::str::contains;
+
+fn spherule() -> Command {
+    let mut command = Command::cargo_bin("spherule").expect("the binary is built");
+    command.env_remove("SPHERULE_LOG");
+    command
+}
+
+fn temporary() -> tempfile::TempDir {
+    tempfile::tempdir().expect("a temporary directory")
+}
+
+#[test]
+fn a_scene_renders_to_png_on_the_cpu() {
+    let dir = temporary();
+    let out = dir.path().join("out.png");
+    spherule()
+        .args([
+            "render",
+            "scenes/two-spheres.toml",
+            "--device",
+            "cpu",
+            "--size",
+            "64x36",
+            "-o",
+        ])
+        .arg(&out)
+        .assert()
+        .success()
+        .stdout("")
+        .stderr(contains("rendering on CPU").and(contains("64 × 36 pixels, 2 spheres")));
+    let image = image::open(&out).expect("a PNG").to_rgb8();
+    assert_eq!(image.dimensions(), (64, 36));
+    // Nothing but the image is left behind.
+    assert_eq!(
+        std::fs::read_dir(dir.path())
+            .expect("the directory")
+            .count(),
+        1
+    );
+}
+
+#[test]
+fn molecules_render_to_exr_with_linear_floats() {
+    let dir = temporary();
+    for input in ["scenes/1crn.pdb", "scenes/c60.xyz"] {
+        let out = dir.path().join("out.exr");
+        spherule()
+            .args([
+                "render", input, "--device", "cpu", "--size", "40x30", "--shade", "depth", "-q",
+                "-o",
+            ])
+            .arg(&out)
+            .assert()
+            .success()
+            .stdout("")
+            .stderr("");
+        let image = image::open(&out).expect("an EXR").to_rgb32f();
+        assert_eq!(image.dimensions(), (40, 30));
+        let farthest = image.pixels().map(|pixel| pixel.0[0]).fold(0.0, f32::max);
+        assert!(
+            farthest > 10.0,
+            "{input}: distances are in ångström, {farthest} is not"
+        );
+    }
+}
+
+#[test]
+fn without_an_output_the_image_is_named_after_the_input() {
+    let dir = temporary();
+    let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/c60.xyz");
+    spherule()
+        .current_dir(dir.path())
+        .args(["render", "--device", "cpu", "--size", "8x8"])
+        .arg(scene)
+        .assert()
+        .success();
+    assert!(dir.path().join("c60.png").is_file());
+}
+
+#[test]
+fn stats_have_every_field() {
+    let dir = temporary();
+    let stats = dir.path().join("stats.json");
+    spherule()
+        .args([
+            "render",
+            "scenes/two-spheres.toml",
+            "--device",
+            "cpu",
+            "--size",
+            "20x10",
+            "-o",
+        ])
+        .arg(dir.path().join("out.png"))
+        .arg("--stats")
+        .arg(&stats)
+        .assert()
+        .success();
+    let text = std::fs::read_to_string(stats).expect("the stats");
+    let stats: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+    assert_eq!(stats["backend"], "cpu");
+    assert_eq!(
+        [
+            &stats["spheres"],
+            &stats["width"],
+            &stats["height"],
+            &stats["rays"]
+        ],
+        [2, 20, 10, 200]
+    );
+    assert!(
+        stats["device"]
+            .as_str()
+            .is_some_and(|name| name.starts_with("CPU"))
+    );
+    assert!(stats["mrays_per_s"].as_f64().is_some_and(|rate| rate > 0.0));
+    let seconds = &stats["seconds"];
+    let time = |name: &str| seconds[name].as_f64().expect(name);
+    let parts = ["load", "setup", "trace", "readback", "encode"].map(time);
+    assert!(parts.iter().all(|part| *part >= 0.0));
+    assert!(parts.iter().sum::<f64>() <= time("total"));
+}
+
+#[test]
+fn check_compares_the_two_paths() {
+    if skips("check_compares_the_two_paths") {
+        return;
+    }
+    let dir = temporary();
+    for device in ["cpu", "gpu"] {
+        let stats = dir.path().join("stats.json");
+        spherule()
+            .args([
+                "render",
+                "scenes/1crn.pdb",
+                "--size",
+                "80x60",
+                "--check",
+                "--device",
+                device,
+                "-o",
+            ])
+            .arg(dir.path().join("out.png"))
+            .arg("--stats")
+            .arg(&stats)
+            .assert()
+            .success()
+            .stdout(contains("check passed").and(contains("largest difference")));
+        let text = std::fs::read_to_string(stats).expect("the stats");
+        let stats: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+        assert_eq!(stats["backend"], device);
+        assert_eq!(stats["check"]["passed"], true);
+        assert_eq!(stats["check"]["pixels"], 4800);
+    }
+}
+
+#[test]
+fn devices_are_listed() {
+    spherule()
+        .arg("devices")
+        .assert()
+        .success()
+        .stdout(contains("CPU, ").and(contains("* is what --device auto takes")));
+    let output = spherule()
+        .args(["devices", "--json"])
+        .output()
+        .expect("it runs");
+    let value: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert!(
+        value["cpu"]["threads"]
+            .as_u64()
+            .is_some_and(|threads| threads > 0)
+    );
+    for adapter in value["adapters"].as_array().expect("a list") {
+        assert!(
+            adapter["name"].is_string() && adapter["max_binding"].is_u64(),
+            "{adapter}"
+        );
+    }
+}
+
+/// Wrong input: exit code 2, the file, the place, and how to mend it.
+#[test]
+fn wrong_input_is_refused_with_its_place() {
+    let dir = temporary();
+    let write = |name: &str, content: &[u8]| {
+        let path = dir.path().join(name);
+        std::fs::write(&path, content).expect("the file can be written");
+        path
+    };
+    let truncated = std::fs::read("scenes/1crn.pdb").expect("crambin");
+    let cases = [
+        (
+            write("key.toml", b"[image]\nwdith = 3\n"),
+            "key.toml:2:1",
+            "unknown field",
+        ),
+        (
+            write(
+                "radius.toml",
+                b"[[sphere]]\ncenter = [0, 0, 0]\nradius = -1\n",
+            ),
+            "radius.toml:3:10",
+            "radius of -1",
+        ),
+        (write("empty.toml", b""), "empty.toml", "no spheres"),
+        (write("not-utf8.toml", b"[image]\n\xff"), "byte 8", "UTF-8"),
+        (
+            write("part.toml", b"[particles]\nfile = \"gone.pdb\"\n"),
+            "part.toml:2:8",
+            "no such file",
+        ),
+        (
+            write("cut.pdb", &truncated[..truncated.len() / 2]),
+            "cut.pdb:213:1",
+            "before its END record",
+        ),
+        (
+            write("short.pdb", &truncated[..17_212]),
+            "short.pdb:213:1",
+            "before its coordinates",
+        ),
+        (
+            write("cut.xyz", b"3\n\nC 0 0 0\n"),
+            "cut.xyz:3:1",
+            "promises 3 atoms",
+        ),
+        (
+            write("picture.bmp", b""),
+            "picture.bmp",
+            "not a kind of file",
+        ),
+        (
+            dir.path().join("nowhere.toml"),
+            "nowhere.toml",
+            "no such file",
+        ),
+        (dir.path().to_path_buf(), "", "not a kind of file"),
+    ];
+    for (input, place, message) in cases {
+        let out = dir.path().join("out.png");
+        spherule()
+            .args(["render", "--device", "cpu", "-o"])
+            .args([&out, &input])
+            .assert()
+            .code(2)
+            .stderr(
+                contains(place)
+                    .and(contains(message))
+                    .and(contains("help: ")),
+            );
+        assert!(!out.exists());
+    }
+}
+
+/// Wrong arguments: exit code 2 and a way out.
+#[test]
+fn wrong_arguments_are_refused() {
+    for (arguments, message) in [
+        (&["render"][..], "INPUT"),
+        (&["render", "x.toml", "-o", "out.jpg"], ".png or .exr"),
+        (&["render", "x.toml", "--size", "0x10"], "1280x720"),
+        (&["render", "x.toml", "--shade", "pretty"], "normals"),
+        (&["paint"], "unrecognized"),
+    ] {
+        spherule()
+            .args(arguments)
+            .assert()
+            .code(2)
+            .stderr(contains(message));
+    }
+}
+
+/// A machine that cannot: exit code 1.
+#[test]
+fn what_the_machine_cannot_do_is_exit_code_one() {
+    let dir = temporary();
+    spherule()
+        .args([
+            "render",
+            "scenes/two-spheres.toml",
+            "--device",
+            "no such adapter",
+            "-o",
+        ])
+        .arg(dir.path().join("out.png"))
+        .assert()
+        .code(1)
+        .stderr(contains("no such adapter").and(contains("spherule devices")));
+    spherule()
+        .args([
+            "render",
+            "scenes/two-spheres.toml",
+            "--device",
+            "cpu",
+            "--size",
+            "4x4",
+            "-o",
+        ])
+        .arg(dir.path().join("no/such/directory/out.png"))
+        .assert()
+        .code(1)
+        .stderr(contains("cannot be written").and(contains("help: ")));
+}
+
+/// An output that stands is replaced whole, and stays as it was where the render fails.
+#[test]
+fn an_old_image_survives_a_failed_render() {
+    let dir = temporary();
+    let out = dir.path().join("out.png");
+    std::fs::write(&out, "old").expect("the file can be written");
+    spherule()
+        .args([
+            "render",
+            "scenes/two-spheres.toml",
+            "--device",
+            "no such adapter",
+            "-o",
+        ])
+        .arg(&out)
+        .assert()
+        .code(1);
+    assert_eq!(std::fs::read(&out).expect("the old file"), b"old");
+    spherule()
+        .args([
+            "render",
+            "scenes/two-spheres.toml",
+            "--device",
+            "cpu",
+            "--size",
+            "4x4",
+            "-o",
+        ])
+        .arg(&out)
+        .assert()
+        .success();
+    assert!(image::open(&out).is_ok());
+}
+
+/// The CPU path must not touch any graphics driver, nor need one.
+#[test]
+fn the_cpu_path_works_without_any_driver() {
+    let dir = temporary();
+    spherule()
+        .env("VK_DRIVER_FILES", "/nonexistent")
+        .env("VK_ICD_FILENAMES", "/nonexistent")
+        .args(["render", "scenes/two-spheres.toml", "--size", "16x9", "-o"])
+        .arg(dir.path().join("out.png"))
+        .assert()
+        .success()
+        .stderr(contains("there is no real GPU"));
+}
+
+#[test]
+fn help_names_every_command_and_default() {
+    spherule()
+        .arg("--help")
+        .assert()
+        .success()
+        .stdout(contains("render").and(contains("devices")));
+    spherule()
+        .args(["render", "--help"])
+        .assert()
+        .success()
+        .stdout(
+            contains("--check")
+                .and(contains("Exit codes"))
+                .and(contains("[default: auto]")),
+        );
+}
