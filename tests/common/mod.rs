@@ -109,16 +109,3 @@ impl Random {
         )
     }
 }
-
-/// The distance between two floats in units in the last place of the larger one's binade.
-pub fn ulps(a: f32, b: f32) -> u64 {
-    let key = |x: f32| {
-        let bits = i64::from(x.to_bits());
-        if bits < 1 << 31 {
-            bits
-        } else {
-            (1 << 31) - bits
-        }
-    };
-    key(a).abs_diff(key(b))
-}
