@@ -39,7 +39,14 @@ fn main() {
 
 fn run() -> Result<()> {
     println!("cargo::rustc-check-cfg=cfg(kernel_compiled_here)");
-    let kernel = PathBuf::from(env_var("DEP_SPHERULE_KERNEL_ROOT")?);
+    // In the repository the kernel is beside this script. Elsewhere its package says where it is;
+    // that answer is cached, and would be wrong after the repository was moved.
+    let beside = PathBuf::from(env_var("CARGO_MANIFEST_DIR")?).join("kernel");
+    let kernel = if beside.join("Cargo.toml").is_file() {
+        beside
+    } else {
+        PathBuf::from(env_var("DEP_SPHERULE_KERNEL_ROOT")?)
+    };
     println!("cargo::rerun-if-changed={}", kernel.join("src").display());
     println!("cargo::rerun-if-changed={}", kernel.join("spirv").display());
 
@@ -87,6 +94,7 @@ fn manifest(kernel: &Path, modules: &Path) -> Result<String> {
         "# Written by the test `kernel_spirv`; read by build.rs. What the modules beside this file are made of.\n",
     );
     writeln!(text, "compiler = \"rust-gpu 0.11.0\"")?;
+    writeln!(text, "nightly = \"nightly-2026-08-15\"")?;
     writeln!(
         text,
         "sources = \"{}\"",
