@@ -32,3 +32,12 @@ pub use film::Image;
 pub use scene::Scene;
 pub use spherule_kernel as kernel;
 pub use wgpu;
+
+/// Compiles the programs of the README and of the book, so that they stay true.
+#[cfg(doctest)]
+mod book {
+    #[doc = include_str!("../README.md")]
+    struct Readme;
+    #[doc = include_str!("../docs/gpu-errors.md")]
+    struct GpuErrors;
+}

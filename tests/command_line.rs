@@ -155,7 +155,8 @@ fn check_compares_the_two_paths() {
             .arg(&stats)
             .assert()
             .success()
-            .stdout(contains("check passed").and(contains("largest difference")));
+            .stdout("")
+            .stderr(contains("check passed").and(contains("largest difference")));
         let text = std::fs::read_to_string(stats).expect("the stats");
         let stats: serde_json::Value = serde_json::from_str(&text).expect("JSON");
         assert_eq!(stats["backend"], device);

@@ -158,9 +158,9 @@ fn check(
         })?;
     let passed = comparison.is_within();
     if !arguments.quiet {
-        print(&format!(
+        eprintln!(
             "{}: against {}, largest difference {:.2}/255, mean {:.5}/255, {} of {} pixels off by more than {}/255 \
-             ({:.1} % may be)\n",
+             ({:.1} % may be)",
             if passed {
                 "check passed"
             } else {
@@ -173,7 +173,7 @@ fn check(
             comparison.pixels,
             comparison.tolerance.channel,
             comparison.tolerance.share * 100.0,
-        ));
+        );
     }
     Ok(Check {
         against: other.name(),

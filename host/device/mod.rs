@@ -38,15 +38,17 @@ impl Device {
     ///
     /// # Errors
     ///
-    /// The errors of [`Gpu::open`], where a GPU was asked for.
+    /// The errors of [`Gpu::open`], where a GPU was asked for. [`DeviceChoice::Auto`] never
+    /// fails: a GPU that does not open leaves the CPU.
     pub fn open(choice: &DeviceChoice) -> Result<(Self, String)> {
         let (adapter, reason) = adapter::choose(choice)?;
-        match adapter {
-            None => Ok((Self::Cpu, reason)),
-            Some(adapter) => {
-                let gpu = Gpu::from_adapter(&adapter, GpuOptions::default())?;
-                Ok((Self::Gpu(Box::new(gpu)), reason))
-            }
+        let Some(adapter) = adapter else {
+            return Ok((Self::Cpu, reason));
+        };
+        match Gpu::from_adapter(&adapter, GpuOptions::default()) {
+            Ok(gpu) => Ok((Self::Gpu(Box::new(gpu)), reason)),
+            Err(error) if *choice == DeviceChoice::Auto => Ok((Self::Cpu, error.to_string())),
+            Err(error) => Err(error),
         }
     }
 

@@ -60,7 +60,8 @@ pub struct Timings {
 ///
 /// # Errors
 ///
-/// [`Error::Scene`] if the scene's view is degenerate, and the device's errors.
+/// [`Error::Scene`] if the scene's view is degenerate or its world inconsistent, and the device's
+/// errors.
 pub fn render(
     scene: &Scene,
     shading: Shading,
@@ -93,6 +94,18 @@ pub fn render(
 
 /// The launch that covers the whole image and every sphere; tiles and runs are cut out of it.
 fn whole_image(scene: &Scene) -> Result<Launch> {
+    let world = &scene.world;
+    if world.spheres.len() != world.material_ids.len() {
+        return Err(Error::Scene(SceneError::without_place(
+            "",
+            format!(
+                "the world has {} spheres and {} material indices",
+                world.spheres.len(),
+                world.material_ids.len()
+            ),
+            "give each sphere the index of its material; World::add keeps the two in step",
+        )));
+    }
     let size = glam::UVec2::new(scene.width, scene.height);
     Ok(Launch {
         camera: camera(scene)?,
