@@ -10,15 +10,27 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
-/// The modules: name, file, SPIR-V target, capabilities beyond `Shader`.
-const MODULES: &[Module] = &[Module {
-    name: "f32",
-    target: "spirv-unknown-spv1.3",
-}];
+/// The modules, one for each set of capabilities that a device may have.
+const MODULES: &[Module] = &[
+    Module {
+        name: "f32",
+        features: &["entry-points"],
+        needs_f64: false,
+    },
+    Module {
+        name: "f64",
+        features: &["entry-points", "f64"],
+        needs_f64: true,
+    },
+];
+
+/// The SPIR-V that they are compiled to.
+const TARGET: &str = "spirv-unknown-spv1.3";
 
 struct Module {
     name: &'static str,
-    target: &'static str,
+    features: &'static [&'static str],
+    needs_f64: bool,
 }
 
 impl Module {
@@ -71,7 +83,7 @@ fn check_committed(kernel: &Path) -> Result<()> {
         return Ok(());
     }
     Err("the kernel's sources and its committed SPIR-V differ: build with `--features compile-kernel` to use \
-         your change, and run `SPHERULE_RENEW_KERNEL=1 cargo test --release --features compile-kernel --test kernel_spirv` \
+         your change, and run `SPHERULE_RENEW_KERNEL=1 cargo test --release --features compile-kernel --test kernel_spirv committed` \
          to renew the committed modules"
         .into())
 }
@@ -108,7 +120,9 @@ fn manifest(kernel: &Path, modules: &Path) -> Result<String> {
         let bytes = fs::read(modules.join(module.file())).unwrap_or_default();
         writeln!(text, "\n[{}]", module.name)?;
         writeln!(text, "file = \"{}\"", module.file())?;
-        writeln!(text, "target = \"{}\"", module.target)?;
+        writeln!(text, "target = \"{TARGET}\"")?;
+        writeln!(text, "features = {:?}", module.features)?;
+        writeln!(text, "needs_f64 = {}", module.needs_f64)?;
         writeln!(text, "bytes = {}", bytes.len())?;
         writeln!(
             text,
@@ -210,8 +224,9 @@ fn env_var(name: &str) -> Result<String> {
 
 #[cfg(feature = "compile-kernel")]
 mod compile {
-    use super::{MODULES, Path, Result, fs};
+    use super::{MODULES, Path, Result, TARGET, fs};
     use cargo_gpu_install::install::Install;
+    use cargo_gpu_install::spirv_builder::Capability;
 
     /// Compiles every module of `kernel` into `out`.
     pub(super) fn compile(kernel: &Path, out: &Path) -> Result<()> {
@@ -226,9 +241,13 @@ mod compile {
                 )
             })?;
         for module in MODULES {
-            let mut builder = backend.to_spirv_builder(kernel, module.target);
+            let mut builder = backend.to_spirv_builder(kernel, TARGET);
             builder.build_script.defaults = true;
-            builder.shader_crate_features.features = vec!["entry-points".into()];
+            builder.shader_crate_features.features =
+                module.features.iter().map(ToString::to_string).collect();
+            if module.needs_f64 {
+                builder.capabilities.push(Capability::Float64);
+            }
             let built = builder
                 .build()
                 .map_err(|error| format!("the kernel does not compile for the GPU: {error}"))?;

@@ -1,15 +1,20 @@
 //! The kernel's SPIR-V that this build embeds: compiled here (feature `compile-kernel`), or the
-//! committed module of `spherule-kernel`.
+//! committed modules of `spherule-kernel`.
+
+use spherule_kernel::Rung;
 
 use crate::device::Module;
 use crate::error::Result;
 
-/// The bytes of the module for devices with 32-bit floats.
 #[cfg(kernel_compiled_here)]
-pub static F32_BYTES: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/spirv/f32.spv"));
-/// The bytes of the module for devices with 32-bit floats.
+static F32: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/spirv/f32.spv"));
 #[cfg(not(kernel_compiled_here))]
-pub static F32_BYTES: &[u8] = spherule_kernel::spirv::F32;
+static F32: &[u8] = spherule_kernel::spirv::F32;
+
+#[cfg(kernel_compiled_here)]
+static F64: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/spirv/f64.spv"));
+#[cfg(not(kernel_compiled_here))]
+static F64: &[u8] = spherule_kernel::spirv::F64;
 
 /// The module for devices with 32-bit floats.
 ///
@@ -17,5 +22,27 @@ pub static F32_BYTES: &[u8] = spherule_kernel::spirv::F32;
 ///
 /// [`KernelInvalid`](crate::Error::KernelInvalid) if this build embeds a broken module.
 pub fn f32() -> Result<Module> {
-    Module::from_bytes("spherule-f32", F32_BYTES)
+    Module::from_bytes("spherule-f32", F32)
+}
+
+/// The module for devices that have 64-bit floats too.
+///
+/// # Errors
+///
+/// As [`f32`].
+pub fn f64() -> Result<Module> {
+    Module::from_bytes("spherule-f64", F64)
+}
+
+/// The module that holds this rung, with the rung fixed: the driver compiles no other.
+///
+/// # Errors
+///
+/// As [`f32`].
+pub fn for_rung(rung: Rung) -> Result<Module> {
+    let module = match rung {
+        Rung::Double => f64(),
+        _ => f32(),
+    };
+    module?.specialise(Rung::SPEC_ID, rung.to_u32())
 }

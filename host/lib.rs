@@ -11,6 +11,7 @@
 //! | [`scene`] | what is rendered: TOML scenes, molecules from PDB and XYZ files |
 //! | [`device`] | adapters, buffers, kernels, launches, and their errors |
 //! | [`mod@render`] | a scene on a device, GPU or CPU |
+//! | [`accuracy`] | how right the rungs of the ladder are, decided by an exact oracle |
 //! | [`film`] | images: encoding, files, comparison |
 //! | [`error`] | [`Error`]: what can go wrong, and how to mend it |
 //! | [`kernel_module`] | the kernel's SPIR-V that this build embeds |
@@ -18,6 +19,7 @@
 
 #![deny(missing_docs)]
 
+pub mod accuracy;
 pub mod cli;
 pub mod device;
 pub mod error;

@@ -265,7 +265,7 @@ fn splitting_changes_nothing() {
             },
         );
         let launch = launch_of(&scene);
-        let shading = Shading::Lit;
+        let shading = Shading::Lit.into();
         let (expected, _) =
             render::gpu::render(&whole, &launch, &scene.world, shading, QUIET).expect("whole");
         for (gpu, pace) in [

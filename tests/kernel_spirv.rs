@@ -15,7 +15,7 @@ fn committed_modules_are_the_output_of_the_sources() {
 
     let compiled = Path::new(env!("OUT_DIR")).join("spirv");
     let committed = Path::new(env!("CARGO_MANIFEST_DIR")).join("kernel/spirv");
-    for file in ["f32.spv", "manifest.toml"] {
+    for file in ["f32.spv", "f64.spv", "manifest.toml"] {
         let fresh = std::fs::read(compiled.join(file)).expect("the build script wrote it");
         if std::env::var_os("SPHERULE_RENEW_KERNEL").is_some_and(|value| value != "0") {
             std::fs::write(committed.join(file), &fresh)
@@ -31,41 +31,51 @@ fn committed_modules_are_the_output_of_the_sources() {
 }
 
 #[test]
-fn the_manifest_names_the_committed_module() {
+fn the_manifest_names_the_committed_modules() {
     let manifest: toml::Table = spirv::MANIFEST.parse().expect("the manifest is TOML");
-    let module = manifest["f32"].as_table().expect("a table for the module");
-    assert_eq!(module["bytes"].as_integer(), Some(spirv::F32.len() as i64));
+    for (name, bytes) in [("f32", spirv::F32), ("f64", spirv::F64)] {
+        let module = manifest[name].as_table().expect("a table for the module");
+        assert_eq!(module["bytes"].as_integer(), Some(bytes.len() as i64));
+    }
 }
 
 #[test]
-fn the_module_has_the_entry_points_that_the_host_calls() {
-    let module = Module::from_bytes("committed", spirv::F32).expect("a module");
-    let mut names: Vec<&str> = module
-        .entry_points()
-        .iter()
-        .map(|entry| entry.name.as_str())
-        .collect();
-    names.sort_unstable();
-    assert_eq!(
-        names,
-        [
-            "find_surfaces",
-            "intersect_pairs",
-            "make_camera_rays",
-            "measure_layout",
-            "render",
-            "shade_hits",
-            "trace_rays"
-        ]
-    );
-    assert!(!module.needs_f64());
+fn the_modules_have_the_entry_points_that_the_host_calls() {
+    for (bytes, needs_f64) in [(spirv::F32, false), (spirv::F64, true)] {
+        let module = Module::from_bytes("committed", bytes).expect("a module");
+        let mut names: Vec<&str> = module
+            .entry_points()
+            .iter()
+            .map(|entry| entry.name.as_str())
+            .collect();
+        names.sort_unstable();
+        assert_eq!(
+            names,
+            [
+                "find_surfaces",
+                "intersect_pairs",
+                "make_camera_rays",
+                "measure_layout",
+                "render",
+                "shade_hits",
+                "trace_rays"
+            ]
+        );
+        assert_eq!(module.needs_f64(), needs_f64);
+    }
 }
 
 /// Every struct in the module that has several members must be one of the shared types, with
 /// the offsets that rustc gives it; and every array's stride must be a shared type's size.
 #[test]
 fn the_modules_offsets_are_the_hosts() {
-    let words: Vec<u32> = spirv::F32
+    for bytes in [spirv::F32, spirv::F64] {
+        check_offsets(bytes);
+    }
+}
+
+fn check_offsets(bytes: &[u8]) {
+    let words: Vec<u32> = bytes
         .chunks_exact(4)
         .map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]]))
         .collect();

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use spherule_kernel::Shading;
+use spherule_kernel::{Rung, Shading};
 
 use crate::device::DeviceChoice;
 use crate::film::file::Format;
@@ -52,6 +52,10 @@ pub(super) struct RenderArguments {
     #[arg(long, value_enum, default_value = "lit")]
     pub(super) shade: Shade,
 
+    /// How rays are intersected: each step costs more and is right more often
+    #[arg(long, value_enum, default_value = "robust")]
+    pub(super) precision: Precision,
+
     /// Render on the other path too (CPU against GPU), print the difference, and fail above 0.1 % of the pixels off by more than 2/255
     #[arg(long)]
     pub(super) check: bool,
@@ -91,6 +95,29 @@ impl From<Shade> for Shading {
             Shade::Normals => Self::Normals,
             Shade::Depth => Self::Depth,
             Shade::Flat => Self::Flat,
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(super) enum Precision {
+    /// The quadratic formula in 32-bit floats
+    Textbook,
+    /// 32-bit floats, arranged so that small distant spheres keep their digits
+    Robust,
+    /// Pairs of 32-bit floats, about 48 bits, on any device
+    Compensated,
+    /// 64-bit floats, where the device has them
+    Double,
+}
+
+impl From<Precision> for Rung {
+    fn from(precision: Precision) -> Self {
+        match precision {
+            Precision::Textbook => Self::Textbook,
+            Precision::Robust => Self::Robust,
+            Precision::Compensated => Self::Compensated,
+            Precision::Double => Self::Double,
         }
     }
 }

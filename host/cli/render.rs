@@ -12,7 +12,7 @@ use super::progress::Bar;
 use crate::device::{Device, DeviceChoice};
 use crate::error::{Error, Result};
 use crate::film::compare::{Comparison, Tolerance};
-use crate::render::{Rendered, render};
+use crate::render::{Rendered, Settings, render};
 use crate::scene::Scene;
 
 /// What `--stats` writes.
@@ -135,7 +135,11 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<ExitCode> {
 
 fn with_bar(arguments: &RenderArguments, scene: &Scene, device: &Device) -> Result<Rendered> {
     let bar = Bar::new(arguments.quiet);
-    render(scene, arguments.shade.into(), device, &|done| bar.set(done))
+    let settings = Settings {
+        shading: arguments.shade.into(),
+        rung: arguments.precision.into(),
+    };
+    render(scene, settings, device, &|done| bar.set(done))
 }
 
 /// Renders on the other path and compares.

@@ -3,7 +3,7 @@
 //! | module | holds |
 //! | --- | --- |
 //! | [`encode`] | from pixels to 8-bit colours |
-//! | [`file`] | PNG and EXR files, written whole or not at all |
+//! | [`mod@file`] | PNG and EXR files, written whole or not at all |
 //! | [`compare`] | the difference between two images |
 
 pub mod compare;

@@ -5,9 +5,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use glam::UVec2;
 use rayon::prelude::*;
 use spherule_kernel::film::render_pixel;
-use spherule_kernel::{Launch, Pixel, Shading};
+use spherule_kernel::{Launch, Pixel, Rung, Shading};
 
-use super::Progress;
+use super::{Progress, Settings};
 use crate::scene::World;
 
 /// Rows in a band: small enough to share the work out evenly, large enough that handing it out
@@ -19,19 +19,46 @@ const BAND_ROWS: usize = 4;
 pub fn render(
     launch: &Launch,
     world: &World,
+    settings: Settings,
+    progress: Progress<'_>,
+) -> Vec<Pixel> {
+    const TEXTBOOK: u32 = Rung::Textbook.to_u32();
+    const ROBUST: u32 = Rung::Robust.to_u32();
+    const COMPENSATED: u32 = Rung::Compensated.to_u32();
+    const DOUBLE: u32 = Rung::Double.to_u32();
+    let bands = match settings.rung {
+        Rung::Textbook => bands_on::<TEXTBOOK>,
+        Rung::Robust => bands_on::<ROBUST>,
+        Rung::Compensated => bands_on::<COMPENSATED>,
+        Rung::Double => bands_on::<DOUBLE>,
+    };
+    bands(launch, world, settings.shading, progress)
+}
+
+fn bands_on<const RUNG: u32>(
+    launch: &Launch,
+    world: &World,
     shading: Shading,
     progress: Progress<'_>,
 ) -> Vec<Pixel> {
+    const LIT: u32 = Shading::Lit.to_u32();
+    const NORMALS: u32 = Shading::Normals.to_u32();
+    const DEPTH: u32 = Shading::Depth.to_u32();
+    const FLAT: u32 = Shading::Flat.to_u32();
     match shading {
-        Shading::Lit => bands::<{ Shading::Lit.to_u32() }>(launch, world, progress),
-        Shading::Normals => bands::<{ Shading::Normals.to_u32() }>(launch, world, progress),
-        Shading::Depth => bands::<{ Shading::Depth.to_u32() }>(launch, world, progress),
-        Shading::Flat => bands::<{ Shading::Flat.to_u32() }>(launch, world, progress),
+        Shading::Lit => bands::<LIT, RUNG>(launch, world, progress),
+        Shading::Normals => bands::<NORMALS, RUNG>(launch, world, progress),
+        Shading::Depth => bands::<DEPTH, RUNG>(launch, world, progress),
+        Shading::Flat => bands::<FLAT, RUNG>(launch, world, progress),
     }
 }
 
-/// Compiled once for each shading mode, as the GPU's pipeline is.
-fn bands<const SHADING: u32>(launch: &Launch, world: &World, progress: Progress<'_>) -> Vec<Pixel> {
+/// Compiled once for each shading mode and rung, as the GPU's pipeline is.
+fn bands<const SHADING: u32, const RUNG: u32>(
+    launch: &Launch,
+    world: &World,
+    progress: Progress<'_>,
+) -> Vec<Pixel> {
     let width = launch.tile_size.x as usize;
     let height = launch.tile_size.y as usize;
     let mut pixels = vec![Pixel::default(); width * height];
@@ -47,6 +74,7 @@ fn bands<const SHADING: u32>(launch: &Launch, world: &World, progress: Progress<
                 );
                 *pixel = render_pixel(
                     SHADING,
+                    RUNG,
                     launch,
                     &world.spheres,
                     &world.material_ids,

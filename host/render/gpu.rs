@@ -6,7 +6,7 @@ use glam::UVec2;
 use spherule_kernel::{Launch, Material, Pixel, Shading, Sphere};
 
 use super::pace::Pace;
-use super::{Progress, Timings};
+use super::{Progress, Settings, Timings};
 use crate::device::{Access, Buffer, Gpu, Kernel};
 use crate::error::{Error, Result};
 use crate::kernel_module;
@@ -26,10 +26,10 @@ pub fn render(
     gpu: &Gpu,
     launch: &Launch,
     world: &World,
-    shading: Shading,
+    settings: Settings,
     progress: Progress<'_>,
 ) -> Result<(Vec<Pixel>, Timings)> {
-    render_paced(gpu, launch, world, shading, progress, Pace::default())
+    render_paced(gpu, launch, world, settings, progress, Pace::default())
 }
 
 /// [`render`] with the first launches sized by `pace`.
@@ -41,12 +41,13 @@ pub fn render_paced(
     gpu: &Gpu,
     launch: &Launch,
     world: &World,
-    shading: Shading,
+    settings: Settings,
     progress: Progress<'_>,
     mut pace: Pace,
 ) -> Result<(Vec<Pixel>, Timings)> {
     let started = Instant::now();
-    let module = kernel_module::f32()?.specialise(Shading::SPEC_ID, shading.to_u32())?;
+    let module = kernel_module::for_rung(settings.rung)?
+        .specialise(Shading::SPEC_ID, settings.shading.to_u32())?;
     let kernel = gpu.kernel(
         &module,
         ENTRY,

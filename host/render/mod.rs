@@ -12,12 +12,30 @@ pub mod pace;
 
 use std::time::{Duration, Instant};
 
-use spherule_kernel::{Camera, Launch, Shading};
+use spherule_kernel::{Camera, Launch, Rung, Shading};
 
 use crate::device::Device;
 use crate::error::{Error, Result, SceneError};
 use crate::film::Image;
 use crate::scene::Scene;
+
+/// What is fixed before the kernel is compiled, on the GPU and on the CPU.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Settings {
+    /// What the image shows of a hit.
+    pub shading: Shading,
+    /// How rays are intersected with spheres.
+    pub rung: Rung,
+}
+
+impl From<Shading> for Settings {
+    fn from(shading: Shading) -> Self {
+        Self {
+            shading,
+            ..Self::default()
+        }
+    }
+}
 
 /// Told now and then how far a render is: a number from 0 to 1. May be called from any thread.
 pub type Progress<'a> = &'a (dyn Fn(f64) + Sync);
@@ -64,28 +82,29 @@ pub struct Timings {
 /// errors.
 pub fn render(
     scene: &Scene,
-    shading: Shading,
+    settings: impl Into<Settings>,
     device: &Device,
     progress: Progress<'_>,
 ) -> Result<Rendered> {
+    let settings = settings.into();
     let launch = whole_image(scene)?;
     match device {
         Device::Cpu => {
             let started = Instant::now();
-            let pixels = cpu::render(&launch, &scene.world, shading, progress);
+            let pixels = cpu::render(&launch, &scene.world, settings, progress);
             let timings = Timings {
                 trace: started.elapsed(),
                 ..Timings::default()
             };
             Ok(Rendered {
-                image: Image::new(scene.width, scene.height, shading, pixels),
+                image: Image::new(scene.width, scene.height, settings.shading, pixels),
                 timings,
             })
         }
         Device::Gpu(gpu) => {
-            let (pixels, timings) = gpu::render(gpu, &launch, &scene.world, shading, progress)?;
+            let (pixels, timings) = gpu::render(gpu, &launch, &scene.world, settings, progress)?;
             Ok(Rendered {
-                image: Image::new(scene.width, scene.height, shading, pixels),
+                image: Image::new(scene.width, scene.height, settings.shading, pixels),
                 timings,
             })
         }

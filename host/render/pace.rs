@@ -16,7 +16,7 @@ const FIRST: u64 = 1 << 27;
 /// The bounds on any launch's work.
 const RANGE: (u64, u64) = (1 << 20, 1 << 42);
 
-/// Keeps launches near [`TARGET`].
+/// Keeps launches near a fifth of a second each.
 #[derive(Clone, Copy, Debug)]
 pub struct Pace {
     intersections: u64,

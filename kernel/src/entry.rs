@@ -8,14 +8,17 @@ use glam::{UVec2, UVec3, Vec4};
 use spirv_std::spirv;
 
 use crate::film::render_pixel;
+use crate::nearest::nearest_hit_in;
+use crate::precision::intersect;
 use crate::shading::shade;
-use crate::{Hit, Launch, Material, Pixel, Ray, Sphere, Surface, layout, nearest_hit};
+use crate::{Hit, Launch, Material, Pixel, Ray, Sphere, Surface, layout};
 
 /// Renders one launch: a tile of the image against a run of the spheres.
 #[spirv(compute(threads(8, 8), entry_point_name = "render"))]
 pub fn render(
     #[spirv(global_invocation_id)] id: UVec3,
     #[spirv(spec_constant(id = 0, default = 0))] shading: u32,
+    #[spirv(spec_constant(id = 1, default = 1))] rung: u32,
     #[spirv(uniform, descriptor_set = 0, binding = 0)] launch: &Launch,
     #[spirv(storage_buffer, descriptor_set = 0, binding = 1)] spheres: &[Sphere],
     #[spirv(storage_buffer, descriptor_set = 0, binding = 2)] material_ids: &[u32],
@@ -28,6 +31,7 @@ pub fn render(
         if index < pixels.len() {
             pixels[index] = render_pixel(
                 shading,
+                rung,
                 launch,
                 spheres,
                 material_ids,
@@ -43,13 +47,14 @@ pub fn render(
 #[spirv(compute(threads(64), entry_point_name = "trace_rays"))]
 pub fn trace_rays(
     #[spirv(global_invocation_id)] id: UVec3,
+    #[spirv(spec_constant(id = 1, default = 1))] rung: u32,
     #[spirv(storage_buffer, descriptor_set = 0, binding = 0)] rays: &[Ray],
     #[spirv(storage_buffer, descriptor_set = 0, binding = 1)] spheres: &[Sphere],
     #[spirv(storage_buffer, descriptor_set = 0, binding = 2)] hits: &mut [Hit],
 ) {
     let index = id.x as usize;
     if index < rays.len() && index < hits.len() {
-        hits[index] = nearest_hit(&rays[index], spheres);
+        hits[index] = nearest_hit_in(rung, &rays[index], spheres, 0, u32::MAX);
     }
 }
 
@@ -57,13 +62,14 @@ pub fn trace_rays(
 #[spirv(compute(threads(64), entry_point_name = "intersect_pairs"))]
 pub fn intersect_pairs(
     #[spirv(global_invocation_id)] id: UVec3,
+    #[spirv(spec_constant(id = 1, default = 1))] rung: u32,
     #[spirv(storage_buffer, descriptor_set = 0, binding = 0)] rays: &[Ray],
     #[spirv(storage_buffer, descriptor_set = 0, binding = 1)] spheres: &[Sphere],
     #[spirv(storage_buffer, descriptor_set = 0, binding = 2)] parameters: &mut [f32],
 ) {
     let index = id.x as usize;
     if index < rays.len() && index < spheres.len() && index < parameters.len() {
-        parameters[index] = spheres[index].intersect(&rays[index]);
+        parameters[index] = intersect(rung, spheres[index], &rays[index]);
     }
 }
 

@@ -88,14 +88,21 @@ impl Pixel {
 }
 
 /// Renders one pixel of a launch: `pixel` counts from the upper left of the tile, `previous` is
-/// what the pixel holds so far. Returns what it must hold now.
+/// what the pixel holds so far, `shading` and `rung` are values of
+/// [`Shading::to_u32`](crate::Shading::to_u32) and
+/// [`Rung::to_u32`](crate::precision::Rung::to_u32). Returns what the pixel must hold now.
 ///
 /// `spheres` and `material_ids` run in parallel; an index into `materials` that leaves the
 /// table takes its last entry.
+#[expect(
+    clippy::too_many_arguments,
+    reason = "these are the kernel's bindings, one each"
+)]
 #[inline]
 #[must_use]
 pub fn render_pixel(
     shading: u32,
+    rung: u32,
     launch: &Launch,
     spheres: &[Sphere],
     material_ids: &[u32],
@@ -111,7 +118,13 @@ pub fn render_pixel(
         result = previous;
         ray.t_max = previous.depth();
     }
-    let hit = nearest_hit_in(&ray, spheres, launch.first_sphere, launch.sphere_count);
+    let hit = nearest_hit_in(
+        rung,
+        &ray,
+        spheres,
+        launch.first_sphere,
+        launch.sphere_count,
+    );
     if hit.is_some() {
         let index = hit.sphere as usize;
         // SAFETY: a hit names a sphere of the slice.

@@ -11,7 +11,8 @@
 //! | [`ray`] | [`Ray`]: an origin, a direction, an interval |
 //! | [`sphere`] | [`Sphere`]: a centre and a radius in one 16-byte load |
 //! | [`hit`] | [`Hit`]: how far along the ray, and which sphere |
-//! | [`precision`] | ways to intersect a ray with a sphere |
+//! | [`arithmetic`] | floats whose rounding errors are kept |
+//! | [`precision`] | the ladder: ways to intersect a ray with a sphere |
 //! | [`nearest`] | the nearest hit of a ray among a slice of spheres |
 //! | [`surface`] | the point and the normal at a hit |
 //! | [`camera`] | [`Camera`]: from a pixel to a ray |
@@ -29,8 +30,10 @@
 //! be a unit vector.
 
 #![no_std]
+#![cfg_attr(target_arch = "spirv", feature(asm_experimental_arch))]
 #![deny(missing_docs)]
 
+pub mod arithmetic;
 pub mod camera;
 #[cfg(feature = "entry-points")]
 pub mod entry;
@@ -53,6 +56,7 @@ pub use glam;
 pub use hit::Hit;
 pub use material::Material;
 pub use nearest::nearest_hit;
+pub use precision::{Precision, Rung};
 pub use ray::Ray;
 pub use shading::Shading;
 pub use sphere::Sphere;

@@ -3,6 +3,7 @@
 use spirv_std::arch::IndexUnchecked;
 
 use crate::hit::Hit;
+use crate::precision::{Rung, intersect};
 use crate::ray::Ray;
 use crate::sphere::Sphere;
 
@@ -23,14 +24,21 @@ use crate::sphere::Sphere;
 #[inline]
 #[must_use]
 pub fn nearest_hit(ray: &Ray, spheres: &[Sphere]) -> Hit {
-    nearest_hit_in(ray, spheres, 0, spheres.len() as u32)
+    nearest_hit_in(
+        Rung::default().to_u32(),
+        ray,
+        spheres,
+        0,
+        spheres.len() as u32,
+    )
 }
 
-/// [`nearest_hit`] among `spheres[first..first + count]`; a range that leaves the slice is cut
-/// to it. The hit's index counts from the start of the slice.
+/// [`nearest_hit`] on this rung (a value of [`Rung::to_u32`]), among
+/// `spheres[first..first + count]`; a range that leaves the slice is cut to it. The hit's index
+/// counts from the start of the slice.
 #[inline]
 #[must_use]
-pub fn nearest_hit_in(ray: &Ray, spheres: &[Sphere], first: u32, count: u32) -> Hit {
+pub fn nearest_hit_in(rung: u32, ray: &Ray, spheres: &[Sphere], first: u32, count: u32) -> Hit {
     let len = spheres.len() as u32;
     let first = first.min(len);
     let end = first + count.min(len - first);
@@ -41,7 +49,7 @@ pub fn nearest_hit_in(ray: &Ray, spheres: &[Sphere], first: u32, count: u32) -> 
     while index < end {
         // SAFETY: `end` is at most the length of the slice.
         let sphere = unsafe { *spheres.index_unchecked(index as usize) };
-        let t = sphere.intersect(&ray);
+        let t = intersect(rung, sphere, &ray);
         if t < ray.t_max {
             ray.t_max = t;
             hit = Hit { t, sphere: index };

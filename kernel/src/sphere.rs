@@ -3,7 +3,7 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{Vec3, Vec4};
 
-use crate::precision::textbook;
+use crate::precision::{Precision, Robust};
 use crate::ray::Ray;
 
 /// A sphere, stored as one [`Vec4`] so that a GPU fetches it with a single 16-byte load.
@@ -59,11 +59,11 @@ impl Sphere {
 
     /// Where `ray` enters the sphere, or leaves it if it starts inside: the smaller root in the
     /// ray's interval, as a parameter along the ray. [`Hit::NONE_T`](crate::Hit::NONE_T) if
-    /// there is none.
+    /// there is none. This is the everyday rung of the ladder in [`crate::precision`].
     #[inline]
     #[must_use]
     pub fn intersect(&self, ray: &Ray) -> f32 {
-        textbook::intersect(*self, ray)
+        Robust::intersect(*self, ray)
     }
 
     /// Whether `point` is inside the sphere or on its surface.

@@ -6,5 +6,7 @@
 
 /// The module for devices with 32-bit floats.
 pub static F32: &[u8] = include_bytes!("../spirv/f32.spv");
+/// The module for devices that have 64-bit floats too.
+pub static F64: &[u8] = include_bytes!("../spirv/f64.spv");
 /// What the modules were made of: sources, dependencies, compiler, digests.
 pub static MANIFEST: &str = include_str!("../spirv/manifest.toml");

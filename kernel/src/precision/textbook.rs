@@ -13,33 +13,28 @@
 #[cfg(target_arch = "spirv")]
 use spirv_std::num_traits::Float as _;
 
+use super::{Precision, choose_root};
 use crate::hit::Hit;
 use crate::ray::Ray;
 use crate::sphere::Sphere;
 
-/// The smaller root in the ray's interval, or [`Hit::NONE_T`].
-///
-/// A NaN anywhere makes every comparison below false, so the answer is "no hit".
-#[inline]
-#[must_use]
-pub fn intersect(sphere: Sphere, ray: &Ray) -> f32 {
-    let from_center = ray.origin - sphere.center();
-    let a = ray.direction.dot(ray.direction);
-    let b = 2.0 * from_center.dot(ray.direction);
-    let c = from_center.dot(from_center) - sphere.radius() * sphere.radius();
-    let discriminant = b * b - 4.0 * a * c;
+/// See the module.
+#[derive(Clone, Copy, Debug)]
+pub struct Textbook;
 
-    let mut t = Hit::NONE_T;
-    if discriminant >= 0.0 {
-        let root = discriminant.sqrt();
-        let near = (-b - root) / (2.0 * a);
-        let far = (-b + root) / (2.0 * a);
-        if (far >= ray.t_min) & (far < ray.t_max) {
-            t = far;
-        }
-        if (near >= ray.t_min) & (near < ray.t_max) {
-            t = near;
+impl Precision for Textbook {
+    #[inline]
+    fn intersect(sphere: Sphere, ray: &Ray) -> f32 {
+        let from_center = ray.origin - sphere.center();
+        let a = ray.direction.dot(ray.direction);
+        let b = 2.0 * from_center.dot(ray.direction);
+        let c = from_center.dot(from_center) - sphere.radius() * sphere.radius();
+        let discriminant = b * b - 4.0 * a * c;
+        if discriminant >= 0.0 {
+            let root = discriminant.sqrt();
+            choose_root((-b - root) / (2.0 * a), (-b + root) / (2.0 * a), ray)
+        } else {
+            Hit::NONE_T
         }
     }
-    t
 }

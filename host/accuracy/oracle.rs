@@ -1,0 +1,415 @@
+//! The oracle: exact arithmetic that decides every intersection.
+//!
+//! A finite float is an integer times a power of two. With all lengths (origin, centre, radius)
+//! brought to one power of two and the direction to another, o = O − C, a = d·d, b = o·d,
+//! c = o·o − r² and Δ = b² − a c are integers, and whether the line meets the sphere is the sign
+//! of Δ. The roots (−b ± √Δ) / a are irrational in general; they are enclosed between two
+//! fractions by an integer square root, with as many more digits as it takes until both ends
+//! round to the same float. A root that is a float, or half-way between two, would never be
+//! decided that way: it is rational, then Δ is a square, and the root is taken exactly.
+//!
+//! num-bigint does the integers: pure Rust, with an integer square root, and fast enough at the
+//! few hundred bits that occur here.
+
+use num_bigint::{BigInt, BigUint, Sign};
+use spherule_kernel::{Ray, Sphere};
+
+/// What is true of a line and a sphere.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Intersection {
+    a: BigInt,
+    b: BigInt,
+    c: BigInt,
+    discriminant: BigInt,
+    radius_squared: BigInt,
+    /// t in scene terms is t in these integers times two to this power.
+    exponent: i64,
+}
+
+/// Which of the two roots.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Root {
+    /// The smaller one: where the line enters.
+    Near,
+    /// The larger one: where it leaves.
+    Far,
+}
+
+impl Intersection {
+    /// The intersection of the line through `ray` with `sphere`; `None` if a number is not finite
+    /// or the direction is zero.
+    #[must_use]
+    pub fn of(ray: &Ray, sphere: &Sphere) -> Option<Self> {
+        let origin = ray.origin.to_array();
+        let center = sphere.center().to_array();
+        let direction = ray.direction.to_array();
+        let lengths = [
+            origin[0],
+            origin[1],
+            origin[2],
+            center[0],
+            center[1],
+            center[2],
+            sphere.radius(),
+        ];
+        if !lengths.iter().chain(&direction).all(|x| x.is_finite()) {
+            return None;
+        }
+        let (lengths, length_exponent) = to_integers(&lengths);
+        let (d, direction_exponent) = to_integers(&direction);
+        let o: Vec<BigInt> = (0..3).map(|i| &lengths[i] - &lengths[3 + i]).collect();
+        let dot =
+            |x: &[BigInt], y: &[BigInt]| -> BigInt { x.iter().zip(y).map(|(x, y)| x * y).sum() };
+        let a = dot(&d, &d);
+        if a.sign() == Sign::NoSign {
+            return None;
+        }
+        let b = dot(&o, &d);
+        let radius_squared = &lengths[6] * &lengths[6];
+        let c = dot(&o, &o) - &radius_squared;
+        let discriminant = &b * &b - &a * &c;
+        Some(Self {
+            a,
+            b,
+            c,
+            discriminant,
+            radius_squared,
+            exponent: length_exponent - direction_exponent,
+        })
+    }
+
+    /// Whether the line meets the sphere, if only in a point.
+    #[must_use]
+    pub fn meets(&self) -> bool {
+        self.discriminant.sign() != Sign::Minus
+    }
+
+    /// Whether the ray's origin is outside (1), on (0) or inside (−1) of the sphere.
+    #[must_use]
+    pub fn side_of_origin(&self) -> i32 {
+        sign(&self.c)
+    }
+
+    /// |Δ| / (a r²), how far the line is from touching the sphere; to about 15 digits.
+    #[must_use]
+    pub fn margin(&self) -> f64 {
+        ratio(&self.discriminant, &(&self.a * &self.radius_squared)).abs()
+    }
+
+    /// The root, rounded to the nearest float (ties to even); infinite where it is beyond the
+    /// largest. `None` if the line misses.
+    #[must_use]
+    pub fn root(&self, root: Root) -> Option<f32> {
+        if !self.meets() {
+            return None;
+        }
+        let sign = match root {
+            Root::Near => -1,
+            Root::Far => 1,
+        };
+        let magnitude = self.discriminant.magnitude();
+        let exact = magnitude.sqrt();
+        if &exact * &exact == *magnitude {
+            let numerator = -&self.b + BigInt::from(sign) * BigInt::from(exact);
+            return Some(round(&numerator, &self.a, self.exponent));
+        }
+        let mut bits = 64_u64;
+        loop {
+            // floor(√Δ · 2^bits), below the true value by less than one.
+            let low = (magnitude << (2 * bits)).sqrt();
+            let high = &low + 1_u32;
+            let end = |root: BigUint| {
+                let numerator = -(&self.b << bits) + BigInt::from(sign) * BigInt::from(root);
+                round(&numerator, &self.a, self.exponent - bits as i64)
+            };
+            let (one, other) = (end(low), end(high));
+            if one.to_bits() == other.to_bits() {
+                return Some(one);
+            }
+            bits *= 2;
+        }
+    }
+
+    /// The smaller root in the ray's interval, rounded; `None` if there is none. The interval is
+    /// decided on the exact root.
+    #[must_use]
+    pub fn nearest(&self, ray: &Ray) -> Option<f32> {
+        [Root::Near, Root::Far].into_iter().find_map(|root| {
+            let inside = self.compare(root, ray.t_min)? >= 0 && self.compare(root, ray.t_max)? < 0;
+            inside.then(|| self.root(root)).flatten()
+        })
+    }
+
+    /// The sign of the exact root minus `t`, a finite float; `None` if the line misses.
+    #[must_use]
+    pub fn compare(&self, root: Root, t: f32) -> Option<i32> {
+        if !self.meets() {
+            return None;
+        }
+        // (−b ± √Δ) / a · 2^e ≷ m · 2^f  ⇔  ±√Δ ≷ b + a m 2^(f − e), scaled to integers.
+        let (m, f) = decompose(t);
+        let shift = f - self.exponent;
+        let (b, am, scale) = if shift >= 0 {
+            (self.b.clone(), (&self.a * m) << shift as u64, 0)
+        } else {
+            (&self.b << (-shift) as u64, &self.a * m, (-shift) as u64)
+        };
+        let right = b + am;
+        let left_squared = &self.discriminant << (2 * scale);
+        let right_squared = &right * &right;
+        Some(match root {
+            // √Δ against the right side.
+            Root::Far if right.sign() == Sign::Minus => 1,
+            Root::Far => order(&left_squared, &right_squared),
+            // −√Δ against it.
+            Root::Near if right.sign() == Sign::Plus => -1,
+            Root::Near => order(&right_squared, &left_squared),
+        })
+    }
+}
+
+fn sign(value: &BigInt) -> i32 {
+    match value.sign() {
+        Sign::Minus => -1,
+        Sign::NoSign => 0,
+        Sign::Plus => 1,
+    }
+}
+
+fn order(a: &BigInt, b: &BigInt) -> i32 {
+    sign(&(a - b))
+}
+
+/// The float as an integer times two to a power.
+fn decompose(x: f32) -> (BigInt, i64) {
+    let bits = x.to_bits();
+    let exponent = i64::from((bits >> 23) & 0xff);
+    let fraction = bits & 0x007f_ffff;
+    let (mantissa, exponent) = if exponent == 0 {
+        (fraction, -149)
+    } else {
+        (fraction | 0x0080_0000, exponent - 150)
+    };
+    let mantissa = BigInt::from(mantissa);
+    (
+        if x.is_sign_negative() {
+            -mantissa
+        } else {
+            mantissa
+        },
+        exponent,
+    )
+}
+
+/// The floats as integers times one common power of two.
+fn to_integers(values: &[f32]) -> (Vec<BigInt>, i64) {
+    let parts: Vec<(BigInt, i64)> = values.iter().map(|value| decompose(*value)).collect();
+    let common = parts
+        .iter()
+        .filter(|(mantissa, _)| mantissa.sign() != Sign::NoSign)
+        .map(|(_, exponent)| *exponent)
+        .min()
+        .unwrap_or(0);
+    let integers = parts
+        .into_iter()
+        .map(|(mantissa, exponent)| {
+            if mantissa.sign() == Sign::NoSign {
+                mantissa
+            } else {
+                mantissa << (exponent - common) as u64
+            }
+        })
+        .collect();
+    (integers, common)
+}
+
+/// `numerator / denominator · 2^exponent` as the nearest float, ties to even; subnormals and
+/// infinity as IEEE 754 has them.
+fn round(numerator: &BigInt, denominator: &BigInt, exponent: i64) -> f32 {
+    let negative = (numerator.sign() == Sign::Minus) != (denominator.sign() == Sign::Minus);
+    let (n, d) = (numerator.magnitude(), denominator.magnitude());
+    if n.bits() == 0 {
+        return 0.0;
+    }
+    // The quotient with 26 or 27 bits: 24 for the float, two to round by; what is left is sticky.
+    let mut shift = 26 - (n.bits() as i64 - d.bits() as i64);
+    // No finer than a quarter of the smallest subnormal.
+    shift = shift.min(exponent + 151);
+    let (n, d) = if shift >= 0 {
+        (n << shift as u64, d.clone())
+    } else {
+        (n.clone(), d << (-shift) as u64)
+    };
+    let quotient = &n / &d;
+    let sticky = u64::from(&quotient * &d != n);
+    let quotient = quotient.iter_u64_digits().next().unwrap_or(0) << 1 | sticky;
+    // quotient · 2^scale, as an integer of at most 28 bits; f64 holds it exactly, and the one
+    // rounding is the conversion to f32. Powers of two in two steps, as one might overflow.
+    let scale = exponent - shift - 1;
+    if scale > 200 {
+        return if negative {
+            f32::NEG_INFINITY
+        } else {
+            f32::INFINITY
+        };
+    }
+    let half = scale / 2;
+    let value = quotient as f64 * 2.0_f64.powi(half as i32) * 2.0_f64.powi((scale - half) as i32);
+    let rounded = value as f32;
+    if negative { -rounded } else { rounded }
+}
+
+/// The quotient of two large integers, to about 15 digits.
+fn ratio(numerator: &BigInt, denominator: &BigInt) -> f64 {
+    let shift: i64 = 60 - (numerator.bits() as i64 - denominator.bits() as i64);
+    let (n, d) = if shift >= 0 {
+        (numerator << shift as u64, denominator.clone())
+    } else {
+        (numerator.clone(), denominator << (-shift) as u64)
+    };
+    if d.sign() == Sign::NoSign {
+        return f64::INFINITY;
+    }
+    let quotient = n / d;
+    let digits = quotient.iter_u64_digits().next().unwrap_or(0) as f64;
+    let scaled = digits * 2.0_f64.powi((-shift).clamp(-2000, 1000) as i32);
+    if quotient.sign() == Sign::Minus {
+        -scaled
+    } else {
+        scaled
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::Vec3;
+    use proptest::prelude::*;
+
+    fn line(origin: [f32; 3], direction: [f32; 3], center: [f32; 3], radius: f32) -> Intersection {
+        Intersection::of(
+            &Ray::new(origin.into(), direction.into()),
+            &Sphere::new(center.into(), radius),
+        )
+        .expect("finite numbers")
+    }
+
+    #[test]
+    fn simple_roots_are_exact() {
+        let hit = line([0.0; 3], [0.0, 0.0, -1.0], [0.0, 0.0, -3.0], 0.5);
+        assert_eq!(hit.root(Root::Near), Some(2.5));
+        assert_eq!(hit.root(Root::Far), Some(3.5));
+        assert_eq!(hit.side_of_origin(), 1);
+        // (1 − 2.25/9)... the margin of a line through the centre is one.
+        assert_eq!(hit.margin(), 1.0);
+    }
+
+    /// A line that touches a sphere in rational coordinates, by Pythagoras: 3² + 4² = 5².
+    #[test]
+    fn pythagorean_tangents_touch_and_their_neighbours_do_not() {
+        for (p, q, r) in [
+            (3.0_f32, 4.0, 5.0_f32),
+            (5.0, 12.0, 13.0),
+            (8.0, 15.0, 17.0),
+        ] {
+            // The point of contact is (p, q, 0), the direction there is (q, −p, 0).
+            let origin = [p - 2.0 * q, q + 2.0 * p, 0.0];
+            let touch = line(origin, [q, -p, 0.0], [0.0; 3], r);
+            assert!(touch.meets());
+            assert_eq!(touch.margin(), 0.0);
+            assert_eq!(touch.root(Root::Near), Some(2.0));
+            assert_eq!(touch.root(Root::Far), Some(2.0));
+            assert!(line(origin, [q, -p, 0.0], [0.0; 3], r.next_up()).meets());
+            assert!(!line(origin, [q, -p, 0.0], [0.0; 3], r.next_down()).meets());
+        }
+    }
+
+    #[test]
+    fn what_is_no_line_has_no_answer() {
+        let sphere = Sphere::new(Vec3::ZERO, 1.0);
+        for ray in [
+            Ray::new(Vec3::ZERO, Vec3::ZERO),
+            Ray::new(Vec3::NAN, Vec3::X),
+            Ray::new(Vec3::ZERO, Vec3::INFINITY),
+        ] {
+            assert_eq!(Intersection::of(&ray, &sphere), None);
+        }
+    }
+
+    #[test]
+    fn rounding_is_to_nearest_even_down_to_subnormals_and_up_to_infinity() {
+        let big = |n: i64| BigInt::from(n);
+        assert_eq!(round(&big(1), &big(3), 0), 1.0 / 3.0);
+        assert_eq!(round(&big(-2), &big(3), 0), -2.0 / 3.0);
+        assert_eq!(round(&big((1 << 24) + 1), &big(1), 0), 16_777_216.0);
+        assert_eq!(round(&big((1 << 24) + 3), &big(1), 0), 16_777_220.0);
+        assert_eq!(round(&big(1), &big(1), -149), f32::from_bits(1));
+        assert_eq!(round(&big(1), &big(1), -150), 0.0);
+        assert_eq!(round(&big(3), &big(1), -151), f32::from_bits(1));
+        assert_eq!(round(&big(1), &big(1), 128), f32::INFINITY);
+        assert_eq!(round(&big(1), &big(1), 5000), f32::INFINITY);
+        assert_eq!(round(&big(1), &big(1), -5000), 0.0);
+    }
+
+    /// Any finite float that is not absurdly large or small.
+    fn float() -> impl Strategy<Value = f32> {
+        (-1.0_f32..1.0, -20_i32..20).prop_map(|(m, e)| m * 2.0_f32.powi(e))
+    }
+
+    proptest! {
+        /// The rounding agrees with the hardware's, which divides integers of 24 bits correctly.
+        #[test]
+        fn rounding_agrees_with_the_hardware(n in -(1_i32 << 24)..(1 << 24), d in 1_i32..(1 << 24), e in -60_i32..60) {
+            let expected = (n as f32 / d as f32) * 2.0_f32.powi(e);
+            prop_assert_eq!(round(&BigInt::from(n), &BigInt::from(d), i64::from(e)), expected);
+        }
+
+        /// An independent route: the quadratic has the sign that the root's place demands, at the
+        /// floats around the root, in exact rational arithmetic.
+        #[test]
+        fn roots_lie_between_the_floats_around_them(
+            o in [float(), float(), float()], d in [float(), float(), float()],
+            c in [float(), float(), float()], r in (0.001_f32..100.0),
+        ) {
+            let ray = Ray::new(o.into(), d.into());
+            let Some(hit) = Intersection::of(&ray, &Sphere::new(c.into(), r)) else { return Ok(()) };
+            if !hit.meets() {
+                prop_assert_eq!(hit.root(Root::Near), None);
+                return Ok(());
+            }
+            for root in [Root::Near, Root::Far] {
+                let t = hit.root(root).expect("a root");
+                prop_assume!(t.is_finite());
+                // The exact root is between the half-way points to the neighbours.
+                prop_assert!(hit.compare(root, t.next_down()).expect("a root") >= 0);
+                prop_assert!(hit.compare(root, t.next_up()).expect("a root") <= 0);
+                // At the roots' two sides the quadratic a t² + 2bt + c changes its sign.
+                let value = |t: f32| {
+                    let (m, e) = decompose(t);
+                    let e = e - hit.exponent;
+                    let up = e.max(0) as u64;
+                    let down = (-e).max(0) as u64;
+                    let m: BigInt = m << up;
+                    sign(&(&hit.a * &m * &m + ((BigInt::from(2) * &hit.b * &m) << down) + (&hit.c << (2 * down))))
+                };
+                let inside = value(t) <= 0 || value(t.next_up()) <= 0 || value(t.next_down()) <= 0;
+                // Unless both roots fall between the same two floats.
+                prop_assert!(inside || hit.root(Root::Near) == hit.root(Root::Far));
+            }
+        }
+
+        /// A power of two on the direction divides t by it, exactly.
+        #[test]
+        fn powers_of_two_scale_t(o in [float(), float(), float()], d in [float(), float(), float()], e in -10_i32..10) {
+            let sphere = Sphere::new(Vec3::new(0.5, -0.25, 3.0), 2.0);
+            let ray = Ray::new(o.into(), d.into());
+            let scaled = Ray::new(o.into(), Vec3::from(d) * 2.0_f32.powi(e));
+            let Some(hit) = Intersection::of(&ray, &sphere) else { return Ok(()) };
+            let other = Intersection::of(&scaled, &sphere).expect("a line");
+            prop_assert_eq!(hit.meets(), other.meets());
+            if let Some(t) = hit.root(Root::Near).filter(|t| t.abs() > 1e-30 && t.abs() < 1e30) {
+                prop_assert_eq!(other.root(Root::Near), Some(t / 2.0_f32.powi(e)));
+            }
+        }
+    }
+}

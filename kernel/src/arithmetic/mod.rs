@@ -1,0 +1,13 @@
+//! Arithmetic that keeps more digits than one float holds. Runs on the GPU and on the CPU.
+//!
+//! | module | holds |
+//! | --- | --- |
+//! | [`strict`] | sum, difference and product that no compiler may rearrange |
+//! | [`error_free`] | the exact error of a sum, a difference, a product |
+//! | [`double_single`] | numbers as a sum of two floats, about 48 bits |
+
+pub mod double_single;
+pub mod error_free;
+pub mod strict;
+
+pub use double_single::DoubleSingle;
