@@ -4,6 +4,8 @@ use std::ops::Range;
 use std::path::PathBuf;
 use std::time::Duration;
 
+use spherule_kernel::Rung;
+
 /// A result whose error is spherule's.
 pub type Result<T, E = Error> = std::result::Result<T, E>;
 
@@ -112,6 +114,17 @@ pub enum Error {
         limit: Duration,
     },
 
+    /// The device's arithmetic is not what a rung of the ladder needs.
+    #[error("the precision {} is refused on {device}: {reason}", rung.name())]
+    RungRefused {
+        /// The rung.
+        rung: Rung,
+        /// The device's name.
+        device: String,
+        /// What the canary found.
+        reason: String,
+    },
+
     /// What a kernel wrote cannot be read back, or it did not write all of it.
     #[error("{what} could not be read back from {device}: {reason}")]
     Readback {
@@ -173,6 +186,11 @@ impl Error {
                     .into()
             }
             Self::Timeout { .. } => "use a faster device or a smaller image; the device may also be hung".into(),
+            Self::RungRefused { .. } => {
+                "use a lower `--precision`, or `--device cpu`, where every rung holds; `spherule check` shows what this \
+                 device does"
+                    .into()
+            }
             Self::Readback { .. } => {
                 "the kernel may have panicked on the device, or the driver miscompiled it: compare with `--device cpu`"
                     .into()

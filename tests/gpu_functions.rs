@@ -2,8 +2,9 @@
 
 mod common;
 
-use common::{Random, gpus, skips};
+use common::{gpus, skips};
 use glam::{UVec2, Vec3, Vec4};
+use spherule::accuracy::random::Random;
 use spherule::device::{Access, Gpu};
 use spherule::kernel::shading::shade;
 use spherule::kernel::{Camera, Hit, Launch, Material, Ray, Sphere, Surface, layout, nearest_hit};

@@ -49,18 +49,20 @@ fn the_modules_have_the_entry_points_that_the_host_calls() {
             .map(|entry| entry.name.as_str())
             .collect();
         names.sort_unstable();
-        assert_eq!(
-            names,
-            [
-                "find_surfaces",
-                "intersect_pairs",
-                "make_camera_rays",
-                "measure_layout",
-                "render",
-                "shade_hits",
-                "trace_rays"
-            ]
-        );
+        let mut expected = vec![
+            "find_surfaces",
+            "intersect_pairs",
+            "make_camera_rays",
+            "measure_arithmetic",
+            "measure_layout",
+            "render",
+            "shade_hits",
+            "trace_rays",
+        ];
+        if needs_f64 {
+            expected.insert(5, "measure_wide_arithmetic");
+        }
+        assert_eq!(names, expected);
         assert_eq!(module.needs_f64(), needs_f64);
     }
 }
@@ -108,13 +110,18 @@ fn check_offsets(bytes: &[u8]) {
             .collect()
     };
     // Padding is a member too, in the module.
-    let expected: Vec<Vec<u32>> = vec![
+    let mut expected: Vec<Vec<u32>> = vec![
+        fields("Operands"),
+        fields("Outcome"),
         fields("Ray"),
         fields("Hit"),
         fields("Launch"),
         with_padding(&fields("Camera"), 12),
         with_padding(&fields("Material"), 12),
     ];
+    if Module::from_bytes("committed", bytes).is_ok_and(|module| module.needs_f64()) {
+        expected.push(fields("WideOutcome"));
+    }
     let found: Vec<&Vec<u32>> = structs
         .values()
         .filter(|offsets| offsets.len() > 1)

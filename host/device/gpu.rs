@@ -183,6 +183,12 @@ impl Gpu {
         self.passthrough
     }
 
+    /// Whether kernels may use 64-bit floats.
+    #[must_use]
+    pub fn has_f64(&self) -> bool {
+        self.device.features().contains(wgpu::Features::SHADER_F64)
+    }
+
     /// What the device can do, as it was opened.
     #[must_use]
     pub fn limits(&self) -> wgpu::Limits {
@@ -229,7 +235,7 @@ impl Gpu {
                     names.join(", ")
                 ))
             })?;
-        if module.needs_f64() && !self.device.features().contains(wgpu::Features::SHADER_F64) {
+        if module.needs_f64() && !self.has_f64() {
             return Err(invalid(format!(
                 "it needs 64-bit floats, which {} lacks",
                 self.name

@@ -3,10 +3,11 @@
 use std::time::{Duration, Instant};
 
 use glam::UVec2;
-use spherule_kernel::{Launch, Material, Pixel, Shading, Sphere};
+use spherule_kernel::{Launch, Material, Pixel, Rung, Shading, Sphere};
 
 use super::pace::Pace;
 use super::{Progress, Settings, Timings};
+use crate::accuracy::canary::Canary;
 use crate::device::{Access, Buffer, Gpu, Kernel};
 use crate::error::{Error, Result};
 use crate::kernel_module;
@@ -21,7 +22,8 @@ const MAX_TILE_PIXELS: u64 = 1 << 23;
 ///
 /// # Errors
 ///
-/// The device's errors, and [`Error::Readback`] if a thread wrote no pixel.
+/// The device's errors, [`Error::RungRefused`] if the canary objects to the rung, and
+/// [`Error::Readback`] if a thread wrote no pixel.
 pub fn render(
     gpu: &Gpu,
     launch: &Launch,
@@ -46,6 +48,9 @@ pub fn render_paced(
     mut pace: Pace,
 ) -> Result<(Vec<Pixel>, Timings)> {
     let started = Instant::now();
+    if matches!(settings.rung, Rung::Compensated | Rung::Double) {
+        Canary::on_gpu(gpu)?.require(settings.rung, gpu.name())?;
+    }
     let module = kernel_module::for_rung(settings.rung)?
         .specialise(Shading::SPEC_ID, settings.shading.to_u32())?;
     let kernel = gpu.kernel(

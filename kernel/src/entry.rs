@@ -7,6 +7,9 @@
 use glam::{UVec2, UVec3, Vec4};
 use spirv_std::spirv;
 
+use crate::canary::{Operands, Outcome, sing};
+#[cfg(any(not(target_arch = "spirv"), feature = "f64"))]
+use crate::canary::{WideOutcome, sing_wide};
 use crate::film::render_pixel;
 use crate::nearest::nearest_hit_in;
 use crate::precision::intersect;
@@ -145,4 +148,31 @@ pub fn shade_hits(
 #[spirv(compute(threads(1), entry_point_name = "measure_layout"))]
 pub fn measure_layout(#[spirv(storage_buffer, descriptor_set = 0, binding = 0)] table: &mut [u32]) {
     layout::write(table);
+}
+
+/// Lets the canary sing on each pair of operands.
+#[spirv(compute(threads(64), entry_point_name = "measure_arithmetic"))]
+pub fn measure_arithmetic(
+    #[spirv(global_invocation_id)] id: UVec3,
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 0)] operands: &[Operands],
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 1)] outcomes: &mut [Outcome],
+) {
+    let index = id.x as usize;
+    if index < operands.len() && index < outcomes.len() {
+        outcomes[index] = sing(operands[index]);
+    }
+}
+
+/// The same in 64-bit floats.
+#[cfg(any(not(target_arch = "spirv"), feature = "f64"))]
+#[spirv(compute(threads(64), entry_point_name = "measure_wide_arithmetic"))]
+pub fn measure_wide_arithmetic(
+    #[spirv(global_invocation_id)] id: UVec3,
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 0)] operands: &[Operands],
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 1)] outcomes: &mut [WideOutcome],
+) {
+    let index = id.x as usize;
+    if index < operands.len() && index < outcomes.len() {
+        outcomes[index] = sing_wide(operands[index]);
+    }
 }

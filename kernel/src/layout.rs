@@ -1,6 +1,7 @@
 //! The memory layout of every type that crosses between host and device, as numbers. Runs on
 //! the GPU and on the CPU, so that the two can be compared.
 
+use crate::canary::{Operands, Outcome, WideOutcome};
 use crate::{Camera, Hit, Launch, Material, Pixel, Ray, Sphere};
 use core::mem::offset_of;
 
@@ -56,4 +57,21 @@ layouts! {
     "Launch.tile_size" = offset_of!(Launch, tile_size);
     "Launch.first_sphere" = offset_of!(Launch, first_sphere);
     "Launch.sphere_count" = offset_of!(Launch, sphere_count);
+    "size of Operands" = size_of::<Operands>();
+    "Operands.a" = offset_of!(Operands, a);
+    "Operands.b" = offset_of!(Operands, b);
+    "size of Outcome" = size_of::<Outcome>();
+    "Outcome.sum" = offset_of!(Outcome, sum);
+    "Outcome.difference" = offset_of!(Outcome, difference);
+    "Outcome.product" = offset_of!(Outcome, product);
+    "Outcome.halves" = offset_of!(Outcome, halves);
+    "Outcome.quotient" = offset_of!(Outcome, quotient);
+    "Outcome.root" = offset_of!(Outcome, root);
+    "Outcome.equals_itself" = offset_of!(Outcome, equals_itself);
+    "Outcome.small_product" = offset_of!(Outcome, small_product);
+    "size of WideOutcome" = size_of::<WideOutcome>();
+    "WideOutcome.sum" = offset_of!(WideOutcome, sum);
+    "WideOutcome.product" = offset_of!(WideOutcome, product);
+    "WideOutcome.quotient" = offset_of!(WideOutcome, quotient);
+    "WideOutcome.root" = offset_of!(WideOutcome, root);
 }

@@ -19,6 +19,7 @@
 //! | [`material`] | [`Material`]: what a sphere looks like |
 //! | [`shading`] | [`Shading`]: from a hit to a colour |
 //! | [`film`] | [`Launch`] and [`Pixel`]: what a launch is told, what it writes |
+//! | [`canary`] | what a device does to the arithmetic that the ladder needs |
 //! | [`layout`] | sizes and offsets of the shared types, as numbers |
 //! | `entry` | the `#[spirv]` entry points, behind the feature `entry-points` |
 //! | `spirv` | the committed modules, for the host only |
@@ -35,6 +36,7 @@
 
 pub mod arithmetic;
 pub mod camera;
+pub mod canary;
 #[cfg(feature = "entry-points")]
 pub mod entry;
 pub mod film;

@@ -78,34 +78,3 @@ pub fn noop_adapter(features: wgpu::Features) -> wgpu::Adapter {
     });
     adapters(&instance).swap_remove(0)
 }
-
-/// A repeatable stream of numbers: PCG-XSH-RR 64/32 (O'Neill 2014).
-pub struct Random(u64);
-
-impl Random {
-    pub fn new(seed: u64) -> Self {
-        Self(seed)
-    }
-
-    pub fn next_u32(&mut self) -> u32 {
-        let old = self.0;
-        self.0 = old
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        let xorshifted = (((old >> 18) ^ old) >> 27) as u32;
-        xorshifted.rotate_right((old >> 59) as u32)
-    }
-
-    /// Uniform between `low` and `high`.
-    pub fn within(&mut self, low: f32, high: f32) -> f32 {
-        low + (high - low) * (self.next_u32() >> 8) as f32 / (1 << 24) as f32
-    }
-
-    pub fn vec3(&mut self, low: f32, high: f32) -> glam::Vec3 {
-        glam::Vec3::new(
-            self.within(low, high),
-            self.within(low, high),
-            self.within(low, high),
-        )
-    }
-}

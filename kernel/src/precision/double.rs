@@ -63,7 +63,8 @@ impl Precision for Double {
 
 /// √x for x ≥ 0, with one Newton step.
 #[inline]
-fn square_root(x: f64) -> f64 {
+#[must_use]
+pub fn square_root(x: f64) -> f64 {
     if x > 0.0 {
         let root = x.sqrt();
         root + (x - root * root) / (root + root)
@@ -74,7 +75,8 @@ fn square_root(x: f64) -> f64 {
 
 /// x / y, with one Newton step.
 #[inline]
-fn quotient(x: f64, y: f64) -> f64 {
+#[must_use]
+pub fn quotient(x: f64, y: f64) -> f64 {
     let quotient = x / y;
     quotient + (x - quotient * y) / y
 }

@@ -51,6 +51,25 @@ pub enum Rung {
 }
 
 impl Rung {
+    /// Every rung, the cheapest first.
+    pub const ALL: [Self; 4] = [
+        Self::Textbook,
+        Self::Robust,
+        Self::Compensated,
+        Self::Double,
+    ];
+
+    /// The rung's name, as the command line takes it.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Textbook => "textbook",
+            Self::Robust => "robust",
+            Self::Compensated => "compensated",
+            Self::Double => "double",
+        }
+    }
+
     /// The specialisation constant that holds the rung.
     pub const SPEC_ID: u32 = 1;
 

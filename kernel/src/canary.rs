@@ -1,0 +1,89 @@
+//! The canary: what a device's compiler and arithmetic do to the operations that the upper rungs
+//! live on. Runs on the GPU and on the CPU; the host judges what comes out.
+
+use bytemuck::{Pod, Zeroable};
+// On the CPU, std has the square roots.
+#[cfg(target_arch = "spirv")]
+use spirv_std::num_traits::Float as _;
+
+use crate::arithmetic::error_free::{split, two_diff, two_product, two_sum};
+
+/// Two numbers to compute with.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Operands {
+    /// The first.
+    pub a: f32,
+    /// The second.
+    pub b: f32,
+}
+
+/// What a device makes of two numbers.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Outcome {
+    /// a + b, rounded, and its error.
+    pub sum: [f32; 2],
+    /// a − b, rounded, and its error.
+    pub difference: [f32; 2],
+    /// a · b, rounded, and its error.
+    pub product: [f32; 2],
+    /// a in two halves.
+    pub halves: [f32; 2],
+    /// a / b.
+    pub quotient: f32,
+    /// √|a|.
+    pub root: f32,
+    /// 1 if a compares equal to itself: 0 for a NaN on a device that keeps to IEEE 754.
+    pub equals_itself: u32,
+    /// The bits of 2⁻¹⁰⁰ · a, subnormal where a is small; zero where the device flushes.
+    pub small_product: u32,
+}
+
+/// Computes everything that the canary looks at.
+#[inline]
+#[must_use]
+pub fn sing(operands: Operands) -> Outcome {
+    let Operands { a, b } = operands;
+    let pair = |(high, low): (f32, f32)| [high, low];
+    Outcome {
+        sum: pair(two_sum(a, b)),
+        difference: pair(two_diff(a, b)),
+        product: pair(two_product(a, b)),
+        halves: pair(split(a)),
+        quotient: a / b,
+        root: a.abs().sqrt(),
+        #[expect(clippy::eq_op, reason = "only a NaN differs from itself")]
+        equals_itself: u32::from(a == a),
+        // 2⁻¹⁰⁰
+        small_product: (a * f32::from_bits((127 - 100) << 23)).to_bits(),
+    }
+}
+
+/// What a device's 64-bit floats make of two numbers.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct WideOutcome {
+    /// 2³⁰ · a + b, where single floats would lose b.
+    pub sum: f64,
+    /// a · b, which 64 bits hold exactly.
+    pub product: f64,
+    /// a / b.
+    pub quotient: f64,
+    /// √|a|.
+    pub root: f64,
+}
+
+/// Computes everything that the canary looks at in 64-bit floats.
+#[cfg(any(not(target_arch = "spirv"), feature = "f64"))]
+#[inline]
+#[must_use]
+pub fn sing_wide(operands: Operands) -> WideOutcome {
+    let (a, b) = (f64::from(operands.a), f64::from(operands.b));
+    WideOutcome {
+        sum: a * 1_073_741_824.0 + b,
+        product: a * b,
+        quotient: crate::precision::double::quotient(a, b),
+        root: crate::precision::double::square_root(a.abs()),
+    }
+}
