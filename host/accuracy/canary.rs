@@ -200,7 +200,7 @@ impl Canary {
         };
         match rung {
             Rung::Textbook | Rung::Robust => None,
-            Rung::Compensated => {
+            Rung::Compensated | Rung::Certified => {
                 if !self.sums.is_whole() {
                     Some(broken("sums", self.sums))
                 } else if !self.products.is_whole() {

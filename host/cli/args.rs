@@ -109,6 +109,8 @@ pub(super) enum Precision {
     Compensated,
     /// 64-bit floats, where the device has them
     Double,
+    /// 32-bit floats with a bound on their error, and more digits only where that cannot decide
+    Certified,
 }
 
 impl From<Precision> for Rung {
@@ -118,6 +120,7 @@ impl From<Precision> for Rung {
             Precision::Robust => Self::Robust,
             Precision::Compensated => Self::Compensated,
             Precision::Double => Self::Double,
+            Precision::Certified => Self::Certified,
         }
     }
 }

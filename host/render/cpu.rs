@@ -26,11 +26,13 @@ pub fn render(
     const ROBUST: u32 = Rung::Robust.to_u32();
     const COMPENSATED: u32 = Rung::Compensated.to_u32();
     const DOUBLE: u32 = Rung::Double.to_u32();
+    const CERTIFIED: u32 = Rung::Certified.to_u32();
     let bands = match settings.rung {
         Rung::Textbook => bands_on::<TEXTBOOK>,
         Rung::Robust => bands_on::<ROBUST>,
         Rung::Compensated => bands_on::<COMPENSATED>,
         Rung::Double => bands_on::<DOUBLE>,
+        Rung::Certified => bands_on::<CERTIFIED>,
     };
     bands(launch, world, settings.shading, progress)
 }

@@ -48,7 +48,7 @@ pub fn render_paced(
     mut pace: Pace,
 ) -> Result<(Vec<Pixel>, Timings)> {
     let started = Instant::now();
-    if matches!(settings.rung, Rung::Compensated | Rung::Double) {
+    if !matches!(settings.rung, Rung::Textbook | Rung::Robust) {
         Canary::on_gpu(gpu)?.require(settings.rung, gpu.name())?;
     }
     let module = kernel_module::for_rung(settings.rung)?

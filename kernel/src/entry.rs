@@ -107,7 +107,7 @@ pub fn make_camera_rays(
 ) {
     let index = id.x;
     let size = launch.image_size;
-    if index < size.x * size.y && (index as usize) < rays.len() {
+    if index / size.x < size.y && (index as usize) < rays.len() {
         let pixel = UVec2::new(index % size.x, index / size.x);
         rays[index as usize] = launch.camera.pixel_ray(pixel, size);
     }

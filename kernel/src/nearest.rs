@@ -24,13 +24,7 @@ use crate::sphere::Sphere;
 #[inline]
 #[must_use]
 pub fn nearest_hit(ray: &Ray, spheres: &[Sphere]) -> Hit {
-    nearest_hit_in(
-        Rung::default().to_u32(),
-        ray,
-        spheres,
-        0,
-        spheres.len() as u32,
-    )
+    nearest_hit_in(Rung::default().to_u32(), ray, spheres, 0, u32::MAX)
 }
 
 /// [`nearest_hit`] on this rung (a value of [`Rung::to_u32`]), among
@@ -39,7 +33,7 @@ pub fn nearest_hit(ray: &Ray, spheres: &[Sphere]) -> Hit {
 #[inline]
 #[must_use]
 pub fn nearest_hit_in(rung: u32, ray: &Ray, spheres: &[Sphere], first: u32, count: u32) -> Hit {
-    let len = spheres.len() as u32;
+    let len = spheres.len().min(u32::MAX as usize) as u32;
     let first = first.min(len);
     let end = first + count.min(len - first);
 

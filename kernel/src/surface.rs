@@ -30,14 +30,14 @@ impl Surface {
     }
 }
 
-/// The vector at length one, or zero if its squared length is zero or not a number.
+/// The vector at length one, or zero if its squared length is zero, overflows or is not a number.
 ///
 /// glam's own function tests against an infinite literal, which not every shader compiler takes.
 #[inline]
 #[must_use]
 pub fn unit(vector: Vec3) -> Vec3 {
     let squared = vector.dot(vector);
-    if squared > 0.0 {
+    if (squared > 0.0) & (squared <= f32::MAX) {
         vector / squared.sqrt()
     } else {
         Vec3::ZERO

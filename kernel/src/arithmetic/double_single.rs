@@ -4,7 +4,7 @@
 //! The algorithms and their bounds are those of M. Joldes, J.-M. Muller and V. Popescu, Tight
 //! and rigorous error bounds for basic building blocks of double-word arithmetic, ACM Trans.
 //! Math. Softw. 44 (2017), with u = 2⁻²⁴: the sum is off by at most 3u² / (1 − 4u), the product
-//! by 5u², relative to the result. Quotient and square root start from the device's own, which
+//! by 7u², the product with a float by 3u², relative to the result. Quotient and square root start from the device's own, which
 //! may be off by a few units in the last place, and correct it once: their relative error is the
 //! square of the start's plus a few u².
 
@@ -84,7 +84,7 @@ impl DoubleSingle {
         Self { high, low }
     }
 
-    /// `self · factor`: `DWTimesFP1`.
+    /// `self · factor`: `DWTimesFP2`.
     #[inline]
     #[must_use]
     pub fn times_float(self, factor: f32) -> Self {

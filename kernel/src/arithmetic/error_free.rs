@@ -53,8 +53,8 @@ pub fn split(a: f32) -> (f32, f32) {
     (high, sub(a, high))
 }
 
-/// `a · b` as its rounded value and the error of that; exact while the error is normal, which
-/// |a·b| ≥ 2⁻¹⁰² ensures.
+/// `a · b` as its rounded value and the error of that; exact while the error is normal or zero,
+/// which |a·b| ≥ 2⁻⁷⁹ ensures (and, on devices that keep subnormals, |a·b| ≥ 2⁻¹⁰²).
 #[inline]
 #[must_use]
 pub fn two_product(a: f32, b: f32) -> (f32, f32) {

@@ -4,8 +4,10 @@
 //! | --- | --- |
 //! | [`strict`] | sum, difference and product that no compiler may rearrange |
 //! | [`error_free`] | the exact error of a sum, a difference, a product |
+//! | [`distill`] | the sum of many floats, whatever cancels |
 //! | [`double_single`] | numbers as a sum of two floats, about 48 bits |
 
+pub mod distill;
 pub mod double_single;
 pub mod error_free;
 pub mod strict;

@@ -11,7 +11,9 @@
 //! | [`robust`] | f32, Δ by the perpendicular, roots without cancellation | every day |
 //! | [`compensated`] | pairs of f32, about 48 bits | the digits of f64 on any device |
 //! | [`double`] | f64 | devices that have f64 |
+//! | [`certified`] | f32 with a bound on its error, more digits only where it cannot decide | right answers everywhere |
 
+pub mod certified;
 pub mod compensated;
 #[cfg(any(not(target_arch = "spirv"), feature = "f64"))]
 pub mod double;
@@ -22,6 +24,7 @@ use crate::hit::Hit;
 use crate::ray::Ray;
 use crate::sphere::Sphere;
 
+pub use certified::Certified;
 pub use compensated::Compensated;
 #[cfg(any(not(target_arch = "spirv"), feature = "f64"))]
 pub use double::Double;
@@ -48,15 +51,18 @@ pub enum Rung {
     Compensated = 2,
     /// `Double`.
     Double = 3,
+    /// [`Certified`].
+    Certified = 4,
 }
 
 impl Rung {
-    /// Every rung, the cheapest first.
-    pub const ALL: [Self; 4] = [
+    /// Every rung.
+    pub const ALL: [Self; 5] = [
         Self::Textbook,
         Self::Robust,
         Self::Compensated,
         Self::Double,
+        Self::Certified,
     ];
 
     /// The rung's name, as the command line takes it.
@@ -67,6 +73,7 @@ impl Rung {
             Self::Robust => "robust",
             Self::Compensated => "compensated",
             Self::Double => "double",
+            Self::Certified => "certified",
         }
     }
 
@@ -91,11 +98,14 @@ pub fn intersect(rung: u32, sphere: Sphere, ray: &Ray) -> f32 {
     const ROBUST: u32 = Rung::Robust.to_u32();
     const COMPENSATED: u32 = Rung::Compensated.to_u32();
     const DOUBLE: u32 = Rung::Double.to_u32();
+    const CERTIFIED: u32 = Rung::Certified.to_u32();
 
     if rung == ROBUST {
         Robust::intersect(sphere, ray)
     } else if rung == COMPENSATED {
         Compensated::intersect(sphere, ray)
+    } else if rung == CERTIFIED {
+        Certified::intersect(sphere, ray)
     } else if rung == DOUBLE {
         #[cfg(any(not(target_arch = "spirv"), feature = "f64"))]
         return Double::intersect(sphere, ray);

@@ -5,7 +5,7 @@
 //! intersection, in Ray Tracing Gems (2019), ch. 7. The foot of the perpendicular from the centre
 //! to the line is f = o − (b/a) d, and Δ/a = r² − f·f. Both terms are of the size of r² where it
 //! matters, so that a small sphere far away keeps its digits: the error of f is a few u·|o|, that
-//! of Δ/a a few u·(r·|o| + r²), where b² − ac has a few u·|o|². The roots are q/a and c/q, which
+//! of Δ/a a few u·(r·|o| + r²) + (u·|o|)², where b² − ac has a few u·|o|². The roots are q/a and c/q, which
 //! add numbers of one sign only.
 //!
 //! What is left is c itself: o·o − r² loses its digits where the origin is near the surface, and
@@ -40,6 +40,10 @@ impl Precision for Robust {
             let root = (a * discriminant).sqrt();
             // |q|, a sum of numbers that are not negative; zero only where both roots are.
             let size = b.abs() + root;
+            if size > f32::MAX {
+                // Far outside of the domain: |d| above 2⁶⁰ or so.
+                return Hit::NONE_T;
+            }
             let outer = size / a;
             let inner = if size > 0.0 { c / size } else { 0.0 };
             if b < 0.0 {

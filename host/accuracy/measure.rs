@@ -1,0 +1,200 @@
+//! How far a rung's answers are from the truth, on one family of rays and one device.
+
+use rayon::prelude::*;
+use serde::Serialize;
+use spherule_kernel::precision::intersect;
+use spherule_kernel::{Hit, Ray, Rung, Sphere};
+
+use super::canary::Canary;
+use super::oracle::Intersection;
+use super::{screen, ulp};
+use crate::device::{Access, Device, Gpu};
+use crate::error::Result;
+use crate::kernel_module;
+
+/// What was measured.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Measured {
+    /// How many rays there were.
+    pub rays: usize,
+    /// How many of them truly hit.
+    pub hits: usize,
+    /// Hits that were reported and are none.
+    pub false_hits: usize,
+    /// Hits that were missed.
+    pub false_misses: usize,
+    /// The largest |Δ| / (a r²) at which a line was put on the wrong side of the silhouette.
+    pub margin: f64,
+    /// The largest error of t, in units in the last place, over the rays that hit and were said
+    /// to, where |c| ≥ 2⁻²⁰ |o|².
+    pub max_ulp: u32,
+    /// The same over all rays that hit and were said to.
+    pub max_ulp_anywhere: u32,
+    /// Hits whose t is off by more than four units in the last place.
+    pub over_4_ulp: usize,
+    /// The ray and the sphere of the largest error.
+    pub worst: Option<Worst>,
+}
+
+/// An input that can be tried again: the bits of all its floats.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Worst {
+    /// Origin and direction.
+    pub ray: [u32; 6],
+    /// Centre and radius.
+    pub sphere: [u32; 4],
+    /// What the rung said.
+    pub found: f32,
+    /// What is true.
+    pub truth: f32,
+}
+
+/// Each ray's answer on this rung and device: the parameter, or [`Hit::NONE_T`].
+///
+/// # Errors
+///
+/// [`RungRefused`](crate::Error::RungRefused) if the canary objects, and the device's errors.
+pub fn intersect_all(device: &Device, rung: Rung, samples: &[(Ray, Sphere)]) -> Result<Vec<f32>> {
+    match device {
+        Device::Cpu => Ok(samples
+            .par_iter()
+            .map(|(ray, sphere)| intersect(rung.to_u32(), *sphere, ray))
+            .collect()),
+        Device::Gpu(gpu) => {
+            Canary::on_gpu(gpu)?.require(rung, gpu.name())?;
+            intersect_on_gpu(gpu, rung, samples)
+        }
+    }
+}
+
+/// [`intersect_all`] without asking the canary: what the device makes of the rung, right or not.
+///
+/// # Errors
+///
+/// The device's errors.
+pub fn intersect_on_gpu(gpu: &Gpu, rung: Rung, samples: &[(Ray, Sphere)]) -> Result<Vec<f32>> {
+    let kernel = gpu.kernel(
+        &kernel_module::for_rung(rung)?,
+        "intersect_pairs",
+        &[Access::Read, Access::Read, Access::ReadWrite],
+    )?;
+    let mut answers = Vec::with_capacity(samples.len());
+    // Two million rays are 64 MiB, within every device's bindings.
+    for samples in samples.chunks(1 << 21) {
+        let (rays, spheres): (Vec<Ray>, Vec<Sphere>) = samples.iter().copied().unzip();
+        let output = gpu.zeroed::<f32>("parameters", samples.len())?;
+        gpu.launch(
+            &kernel,
+            &[
+                gpu.upload("rays", &rays)?.binding(),
+                gpu.upload("spheres", &spheres)?.binding(),
+                output.binding(),
+            ],
+            kernel.workgroups_for([samples.len() as u32, 1, 1]),
+        )?;
+        answers.extend(gpu.read(&output)?);
+    }
+    Ok(answers)
+}
+
+/// Judges the answers of [`intersect_all`].
+#[must_use]
+pub fn judge(samples: &[(Ray, Sphere)], answers: &[f32]) -> Measured {
+    samples
+        .par_iter()
+        .zip(answers)
+        .fold(Measured::none, |mut measured, ((ray, sphere), found)| {
+            measured.add(ray, sphere, *found);
+            measured
+        })
+        .reduce(Measured::none, Measured::merge)
+}
+
+impl Measured {
+    fn none() -> Self {
+        Self {
+            rays: 0,
+            hits: 0,
+            false_hits: 0,
+            false_misses: 0,
+            margin: 0.0,
+            max_ulp: 0,
+            max_ulp_anywhere: 0,
+            over_4_ulp: 0,
+            worst: None,
+        }
+    }
+
+    fn add(&mut self, ray: &Ray, sphere: &Sphere, found: f32) {
+        let truth = screen::nearest(ray, sphere);
+        let says_hit = found < Hit::NONE_T;
+        self.rays += 1;
+        self.hits += usize::from(truth.is_some());
+        match truth {
+            None if says_hit => self.false_hits += 1,
+            Some(_) if !says_hit => self.false_misses += 1,
+            _ => {}
+        }
+        if says_hit != truth.is_some() {
+            // A line on the right side of the silhouette whose roots were put on the wrong side of
+            // the interval's end says nothing of Δ.
+            if let Some(exact) = Intersection::of(ray, sphere)
+                && exact.meets() != says_hit
+            {
+                self.margin = self.margin.max(exact.margin());
+            }
+            return;
+        }
+        let Some(truth) = truth else { return };
+        let off = ulp::distance(found, truth);
+        self.over_4_ulp += usize::from(off > 4);
+        if has_digits_of_c(ray, sphere) {
+            self.max_ulp = self.max_ulp.max(off);
+        }
+        if off > self.max_ulp_anywhere || self.worst.is_none() {
+            self.max_ulp_anywhere = self.max_ulp_anywhere.max(off);
+            self.worst = Some(Worst {
+                ray: [ray.origin, ray.direction]
+                    .map(|v| v.to_array().map(f32::to_bits))
+                    .as_flattened()
+                    .try_into()
+                    .unwrap_or_default(),
+                sphere: [
+                    sphere.center().x.to_bits(),
+                    sphere.center().y.to_bits(),
+                    sphere.center().z.to_bits(),
+                    sphere.radius().to_bits(),
+                ],
+                found,
+                truth,
+            });
+        }
+    }
+
+    fn merge(self, other: Self) -> Self {
+        let worst = if other.max_ulp_anywhere > self.max_ulp_anywhere || self.worst.is_none() {
+            other.worst
+        } else {
+            self.worst
+        };
+        Self {
+            rays: self.rays + other.rays,
+            hits: self.hits + other.hits,
+            false_hits: self.false_hits + other.false_hits,
+            false_misses: self.false_misses + other.false_misses,
+            margin: self.margin.max(other.margin),
+            max_ulp: self.max_ulp.max(other.max_ulp),
+            max_ulp_anywhere: self.max_ulp_anywhere.max(other.max_ulp_anywhere),
+            over_4_ulp: self.over_4_ulp + other.over_4_ulp,
+            worst,
+        }
+    }
+}
+
+/// Whether |c| ≥ 2⁻²⁰ |o|²: the origin is not so close to the surface that c loses its digits.
+fn has_digits_of_c(ray: &Ray, sphere: &Sphere) -> bool {
+    let o = ray.origin.as_dvec3() - sphere.center().as_dvec3();
+    let oo = o.dot(o);
+    let c = oo - f64::from(sphere.radius()).powi(2);
+    c.abs() >= oo * 2.0_f64.powi(-20)
+}

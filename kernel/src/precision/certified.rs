@@ -1,0 +1,194 @@
+//! Right answers everywhere, at nearly the everyday price. Runs on the GPU and on the CPU.
+//!
+//! Three stages, each asked only where the one before cannot decide, after J. R. Shewchuk's
+//! adaptive predicates (Discrete Comput. Geom. 18 (1997) 305).
+//!
+//! **1. A filter in f32.** With u = 2⁻²⁴, forwards through o = O − C, b/a and the foot
+//! f = o − (b/a)d: each component of f is off by at most 10u|o|, because |(b/a)d| ≤ |o|; so f·f is
+//! off by 20u|f||o| + 100u²o·o + 3u f·f ≤ 16u (f·f + o·o). Against r², off by u r², a line misses
+//! for certain where f·f − r² > 32u (f·f + o·o + r²). Where c is certainly positive, a ray with
+//! b > 0 leaves and misses: were b truly negative, it would be by 8u|o||d| at most, and a hit needs
+//! b² ≥ ac. And where the ray enters, t is at least (|b| − √(a(r² − f·f + E)))/a, less 32u of its
+//! terms; beyond the end of the ray's interval the hit does not matter. Fused or not, division
+//! and root off by a few units: the factor 32 covers all of them twice over.
+//!
+//! **2. Pairs of floats**, as [`super::compensated`] has them, where Δ, c and b are far enough
+//! from zero for their errors: with E₂ = 2⁻³⁸ (a r² + k·k + |k||o||d|) the sign of Δ is certain
+//! where |Δ| > E₂, and t is within 1 ulp where E₂ ≤ 2⁻²⁶ √Δ·|q|, |c| ≥ 2⁻¹⁹ (o·o + r²) and
+//! |q| ≥ 2⁻¹⁸ |o||d|.
+//!
+//! **3. Distillation.** Δ, b and c as sums of exact products, summed without loss
+//! ([`crate::arithmetic::distill`]): each is then right to about 40 bits, whatever cancels, and
+//! zero where it is zero, unless it is within 2⁻¹⁰⁰ of cancelling completely, which floats of one
+//! binade cannot. The rest adds numbers of one sign, so that t is within 1 ulp.
+
+// On the CPU, std has `f32::sqrt`.
+#[cfg(target_arch = "spirv")]
+use spirv_std::num_traits::Float as _;
+
+use super::compensated::Quadratic;
+use super::{Precision, choose_root};
+use crate::arithmetic::DoubleSingle;
+use crate::arithmetic::distill::distill;
+use crate::arithmetic::error_free::two_product;
+use crate::arithmetic::strict::{add, sub};
+use crate::hit::Hit;
+use crate::ray::Ray;
+use crate::sphere::Sphere;
+
+/// See the module.
+#[derive(Clone, Copy, Debug)]
+pub struct Certified;
+
+/// 32u.
+const FILTER: f32 = 1.0 / (1 << 19) as f32;
+
+/// Which stage decided.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[repr(u32)]
+pub enum Stage {
+    /// The filter.
+    Filter = 0,
+    /// Pairs of floats.
+    Pairs = 1,
+    /// Distillation.
+    Distilled = 2,
+}
+
+impl Precision for Certified {
+    #[inline]
+    fn intersect(sphere: Sphere, ray: &Ray) -> f32 {
+        intersect_with_stage(sphere, ray).0
+    }
+}
+
+/// The answer, and which stage gave it.
+#[inline]
+#[must_use]
+pub fn intersect_with_stage(sphere: Sphere, ray: &Ray) -> (f32, Stage) {
+    if misses_for_certain(sphere, ray) {
+        return (Hit::NONE_T, Stage::Filter);
+    }
+    let quadratic = Quadratic::of(sphere, ray);
+    if quadratic.misses_for_certain() {
+        return (Hit::NONE_T, Stage::Pairs);
+    }
+    if quadratic.is_certain() {
+        let (near, far) = quadratic.roots();
+        return (choose_root(near, far, ray), Stage::Pairs);
+    }
+    let quadratic = distilled(&quadratic);
+    let meets = (quadratic.discriminant.high >= 0.0) & (quadratic.a.high > 0.0);
+    if meets {
+        let (near, far) = quadratic.roots();
+        (choose_root(near, far, ray), Stage::Distilled)
+    } else {
+        (Hit::NONE_T, Stage::Distilled)
+    }
+}
+
+/// Stage 1. False where it cannot tell, which includes every NaN.
+#[inline]
+fn misses_for_certain(sphere: Sphere, ray: &Ray) -> bool {
+    let o = ray.origin - sphere.center();
+    let d = ray.direction;
+    let a = d.dot(d);
+    let b = o.dot(d);
+    let foot = o - d * (b / a);
+    let (ff, oo) = (foot.dot(foot), o.dot(o));
+    let rr = sphere.radius() * sphere.radius();
+    let passes_by = ff - rr > FILTER * (ff + oo + rr);
+    let is_outside = oo - rr > FILTER * (oo + rr);
+    if passes_by | (is_outside & (b > 0.0)) {
+        return true;
+    }
+    if is_outside {
+        let discriminant = (rr - ff).max(0.0) + FILTER * (ff + oo + rr);
+        let root = (a * discriminant).sqrt();
+        let size = (a * oo).sqrt() + root;
+        let nearest = (-b - root - FILTER * size) / a;
+        return nearest > ray.t_max + ray.t_max.abs() * FILTER;
+    }
+    false
+}
+
+/// Stage 3.
+#[inline]
+fn distilled(pairs: &Quadratic) -> Quadratic {
+    let (o, d, r) = (pairs.o, pairs.d, pairs.r);
+
+    // a = d·d and r² exactly; b = o·d; c = o·o − r².
+    let mut a_terms = [0.0; 6];
+    let mut b_terms = [0.0; 12];
+    let mut c_terms = [0.0; 20];
+    let mut axis = 0;
+    while axis < 3 {
+        put_product(&mut a_terms, 2 * axis, d[axis], d[axis]);
+        put_product(&mut b_terms, 4 * axis, o[axis].high, d[axis]);
+        put_product(&mut b_terms, 4 * axis + 2, o[axis].low, d[axis]);
+        put_product(&mut c_terms, 6 * axis, o[axis].high, o[axis].high);
+        put_product(
+            &mut c_terms,
+            6 * axis + 2,
+            add(o[axis].high, o[axis].high),
+            o[axis].low,
+        );
+        put_product(&mut c_terms, 6 * axis + 4, o[axis].low, o[axis].low);
+        axis += 1;
+    }
+    let rr = two_product(r, r);
+    c_terms[18] = sub(0.0, rr.0);
+    c_terms[19] = sub(0.0, rr.1);
+
+    // Δ = a r² − k·k, each component of k as eight terms.
+    let mut terms = [0.0; 240];
+    let mut at = 0;
+    let mut index = 0;
+    while index < 6 {
+        put_product(&mut terms, at, a_terms[index], rr.0);
+        put_product(&mut terms, at + 2, a_terms[index], rr.1);
+        at += 4;
+        index += 1;
+    }
+    let mut axis = 0;
+    while axis < 3 {
+        let (y, z) = ((axis + 1) % 3, (axis + 2) % 3);
+        let mut k = [0.0; 8];
+        put_product(&mut k, 0, o[y].high, d[z]);
+        put_product(&mut k, 2, o[y].low, d[z]);
+        let (negative_high, negative_low) = (sub(0.0, o[z].high), sub(0.0, o[z].low));
+        put_product(&mut k, 4, negative_high, d[y]);
+        put_product(&mut k, 6, negative_low, d[y]);
+        let mut first = 0;
+        while first < 8 {
+            let negative = sub(0.0, k[first]);
+            put_product(&mut terms, at, negative, k[first]);
+            at += 2;
+            let twice = add(negative, negative);
+            let mut second = first + 1;
+            while second < 8 {
+                put_product(&mut terms, at, twice, k[second]);
+                at += 2;
+                second += 1;
+            }
+            first += 1;
+        }
+        axis += 1;
+    }
+
+    Quadratic {
+        a: distill(&mut a_terms),
+        b: distill(&mut b_terms),
+        c: distill(&mut c_terms),
+        discriminant: distill(&mut terms),
+        ..*pairs
+    }
+}
+
+/// Puts the product, exactly, into two places from `at` on.
+#[inline]
+fn put_product<const N: usize>(terms: &mut [f32; N], at: usize, a: f32, b: f32) {
+    let DoubleSingle { high, low } = DoubleSingle::product(a, b);
+    terms[at] = high;
+    terms[at + 1] = low;
+}

@@ -1,0 +1,187 @@
+//! What each rung promises, on every family of rays, on the CPU and on every adapter, decided by
+//! the oracle. `SPHERULE_RAYS=N` sets how many rays a family; the slow suite asks for ten million
+//! in all.
+
+mod common;
+
+use common::{all_adapters, open, skips};
+use spherule::Device;
+use spherule::accuracy::canary::Canary;
+use spherule::accuracy::families::Family;
+use spherule::accuracy::measure::{Measured, intersect_all, intersect_on_gpu, judge};
+use spherule::device::GpuOptions;
+use spherule::kernel::Rung;
+
+fn rays() -> usize {
+    std::env::var("SPHERULE_RAYS")
+        .ok()
+        .and_then(|text| text.parse().ok())
+        .unwrap_or(100_000)
+}
+
+fn measure(device: &Device, rung: Rung, family: Family) -> Measured {
+    let samples = family.sample(2026, rays());
+    let answers = intersect_all(device, rung, &samples).expect("the rung runs here");
+    let measured = judge(&samples, &answers);
+    println!(
+        "{:11} {:8} max {:>10} ulp ({} anywhere), {} over 4, {} false hits, {} false misses, margin {:.1e}",
+        rung.name(),
+        family.name(),
+        measured.max_ulp,
+        measured.max_ulp_anywhere,
+        measured.over_4_ulp,
+        measured.false_hits,
+        measured.false_misses,
+        measured.margin,
+    );
+    measured
+}
+
+/// `compensated` and `double`: at most 1 ulp wherever |c| ≥ 2⁻²⁰ |o|², and no line on the wrong
+/// side of the silhouette outside of a margin on |Δ| / (a r²).
+fn check_upper_rungs(device: &Device) {
+    for family in Family::ALL {
+        for (rung, margin) in [
+            // 2⁻⁴² times |o|/r, which is at most 10⁵ in the family `far`.
+            (Rung::Compensated, 1e5 * 2.0_f64.powi(-40)),
+            (Rung::Double, 1e5 * 2.0_f64.powi(-48)),
+        ] {
+            let measured = measure(device, rung, family);
+            assert!(
+                measured.hits * 20 > measured.rays,
+                "{} hits tell nothing",
+                measured.hits
+            );
+            assert!(
+                measured.max_ulp <= 1,
+                "{} {}: {measured:?}",
+                rung.name(),
+                family.name()
+            );
+            assert!(
+                measured.margin <= margin,
+                "{} {}: {measured:?}",
+                rung.name(),
+                family.name()
+            );
+        }
+    }
+}
+
+/// `certified`: every ray in its class, and at most 1 ulp anywhere.
+fn check_certified(device: &Device) {
+    for family in Family::ALL {
+        let measured = measure(device, Rung::Certified, family);
+        assert_eq!(
+            (measured.false_hits, measured.false_misses),
+            (0, 0),
+            "{}: {measured:?}",
+            family.name()
+        );
+        assert!(
+            measured.max_ulp_anywhere <= 1,
+            "{}: {measured:?}",
+            family.name()
+        );
+    }
+}
+
+#[test]
+fn certified_is_right_everywhere_on_the_cpu() {
+    check_certified(&Device::Cpu);
+}
+
+#[test]
+fn certified_is_right_everywhere_on_gpus() {
+    if skips("certified_is_right_everywhere_on_gpus") {
+        return;
+    }
+    for adapter in all_adapters() {
+        check_certified(&Device::Gpu(Box::new(open(adapter, GpuOptions::default()))));
+    }
+}
+
+#[test]
+fn upper_rungs_keep_their_bounds_on_the_cpu() {
+    check_upper_rungs(&Device::Cpu);
+}
+
+#[test]
+fn upper_rungs_keep_their_bounds_on_gpus() {
+    if skips("upper_rungs_keep_their_bounds_on_gpus") {
+        return;
+    }
+    for adapter in all_adapters() {
+        check_upper_rungs(&Device::Gpu(Box::new(open(adapter, GpuOptions::default()))));
+    }
+}
+
+/// What the lower rungs are for, and what they are not: `robust` cures small spheres far away,
+/// and neither has digits left on a huge ground.
+#[test]
+fn lower_rungs_fail_where_they_are_said_to() {
+    let share_over_4 = |rung, family| {
+        let measured = measure(&Device::Cpu, rung, family);
+        (
+            measured.over_4_ulp as f64 / measured.hits as f64,
+            (measured.false_hits + measured.false_misses) as f64 / measured.rays as f64,
+        )
+    };
+    let (textbook, textbook_wrong) = share_over_4(Rung::Textbook, Family::Far);
+    let (robust, robust_wrong) = share_over_4(Rung::Robust, Family::Far);
+    assert!(textbook > 0.5 && robust < 0.02, "{textbook} {robust}");
+    assert!(
+        robust_wrong < 0.1 * textbook_wrong,
+        "{textbook_wrong} {robust_wrong}"
+    );
+    // Half of the generic rays aim at a silhouette or near it.
+    assert!(share_over_4(Rung::Robust, Family::Generic).0 < 0.05);
+    assert!(share_over_4(Rung::Robust, Family::Ground).0 > 0.9);
+}
+
+/// The mutation: through naga, which drops NoContraction, the compensated rung must be refused by
+/// the canary wherever the driver makes use of that freedom, and its answers are then wrong.
+#[test]
+fn without_no_contraction_the_canary_objects() {
+    if skips("without_no_contraction_the_canary_objects") {
+        return;
+    }
+    for adapter in all_adapters() {
+        let gpu = open(
+            adapter,
+            GpuOptions {
+                through_naga: true,
+                ..GpuOptions::default()
+            },
+        );
+        let samples = Family::Ground.sample(7, 10_000);
+        let answers = intersect_on_gpu(&gpu, Rung::Compensated, &samples).expect("it runs");
+        let measured = judge(&samples, &answers);
+        let canary = Canary::on_gpu(&gpu).expect("it sings");
+        println!("{}: {canary:?}\n{measured:?}", gpu.name());
+        let objects = canary.objection(Rung::Compensated).is_some();
+        assert_eq!(objects, measured.max_ulp > 1, "{canary:?} {measured:?}");
+        // Both drivers that were tried do; one that keeps the operations apart may run the rung.
+        assert!(objects, "{}", gpu.name());
+    }
+}
+
+/// CPU and GPU agree bit for bit wherever no division or square root of the device's own decides:
+/// the corrected ones of the compensated rung leave the same float.
+#[test]
+fn the_compensated_rung_gives_the_same_bits_everywhere() {
+    if skips("the_compensated_rung_gives_the_same_bits_everywhere") {
+        return;
+    }
+    for adapter in all_adapters() {
+        let device = Device::Gpu(Box::new(open(adapter, GpuOptions::default())));
+        for family in [Family::Generic, Family::Far, Family::Inside] {
+            let samples = family.sample(99, 20_000);
+            let on_cpu = intersect_all(&Device::Cpu, Rung::Compensated, &samples).expect("CPU");
+            let on_gpu = intersect_all(&device, Rung::Compensated, &samples).expect("GPU");
+            let differing = on_cpu.iter().zip(&on_gpu).filter(|(a, b)| a != b).count();
+            // A root half-way between two floats, up to 2⁻⁴⁶, may go either way.
+            assert!(differing <= 2, "{}: {differing}", family.name());
+        }
+    }
+}
