@@ -24,6 +24,9 @@ const MODULES: &[Module] = &[
     },
 ];
 
+/// The toolchain that rust-gpu 0.11 is built against; rust-gpu itself knows it too, and installs it.
+const NIGHTLY: &str = "nightly-2026-08-15";
+
 /// The SPIR-V that they are compiled to.
 const TARGET: &str = "spirv-unknown-spv1.3";
 
@@ -89,7 +92,8 @@ fn check_committed(kernel: &Path) -> Result<()> {
 }
 
 /// The manifest as compared: away from this workspace (in a package from a registry) the lock
-/// file is the dependant's, and what it locks did not make the committed modules.
+/// file is the dependant's, what it locks did not make the committed modules, and cargo has
+/// written the kernel's Cargo.toml anew.
 #[cfg(not(feature = "compile-kernel"))]
 fn without_dependencies(manifest: &str, kernel: &Path) -> String {
     let keep_all = workspace_lock(kernel).is_some();
@@ -105,8 +109,7 @@ fn manifest(kernel: &Path, modules: &Path) -> Result<String> {
     let mut text = String::from(
         "# Written by the test `kernel_spirv`; read by build.rs. What the modules beside this file are made of.\n",
     );
-    writeln!(text, "compiler = \"rust-gpu 0.11.0\"")?;
-    writeln!(text, "nightly = \"nightly-2026-08-15\"")?;
+    writeln!(text, "nightly = \"{NIGHTLY}\"")?;
     writeln!(
         text,
         "sources = \"{}\"",
@@ -116,6 +119,12 @@ fn manifest(kernel: &Path, modules: &Path) -> Result<String> {
         .map(|lock| locked_dependencies(&lock))
         .unwrap_or_default();
     writeln!(text, "dependencies = [{}]", locked.join(", "))?;
+    let package = fs::read(kernel.join("Cargo.toml"))?;
+    writeln!(
+        text,
+        "dependencies_package = \"{}\"",
+        hex(&hmac_sha256::Hash::hash(&package))
+    )?;
     for module in MODULES {
         let bytes = fs::read(modules.join(module.file())).unwrap_or_default();
         writeln!(text, "\n[{}]", module.name)?;
@@ -186,6 +195,7 @@ fn locked_dependencies(lock: &str) -> Vec<String> {
     // spirv-std can use several versions of glam, and the lock file holds them all.
     const IN_THE_KERNEL: &[(&str, &str)] = &[
         ("bytemuck", ""),
+        ("cargo-gpu-install", ""),
         ("glam", "0.34."),
         ("libm", ""),
         ("num-traits", ""),

@@ -28,5 +28,7 @@ fn main() -> spherule::Result<()> {
     println!("rendering on {} ({why})", device.name());
     render(&scene, Shading::Normals, &device, QUIET)?
         .image
-        .save("step4.png")
+        .save("step4.png")?;
+    println!("wrote step4.png");
+    Ok(())
 }

@@ -57,5 +57,7 @@ fn main() -> spherule::Result<()> {
             report("Falling back to the CPU:", &error);
             render(&scene, Shading::Lit, &Device::Cpu, QUIET)
         })?;
-    rendered.image.save("step5.png")
+    rendered.image.save("step5.png")?;
+    println!("wrote step5.png");
+    Ok(())
 }

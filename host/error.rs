@@ -208,8 +208,10 @@ impl Error {
 }
 
 /// What is wrong with a scene, and where.
+///
+/// Its message starts with the file, and with line and column where the mistake has a place.
 #[derive(Debug, thiserror::Error)]
-#[error("{message}")]
+#[error("{}{message}", self.whereabouts())]
 pub struct SceneError {
     /// The file that is wrong.
     pub path: PathBuf,
@@ -250,6 +252,19 @@ impl Place {
 }
 
 impl SceneError {
+    /// `file:line:column: `, as far as they are known.
+    fn whereabouts(&self) -> String {
+        let path = self.path.display();
+        match &self.place {
+            Some(place) => {
+                let (line, column) = place.line_column();
+                format!("{path}:{line}:{column}: ")
+            }
+            None if self.path.as_os_str().is_empty() => String::new(),
+            None => format!("{path}: "),
+        }
+    }
+
     pub(crate) fn without_place(
         path: impl Into<PathBuf>,
         message: impl Into<String>,

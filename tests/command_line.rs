@@ -171,7 +171,7 @@ fn devices_are_listed() {
         .arg("devices")
         .assert()
         .success()
-        .stdout(contains("CPU, ").and(contains("* is what --device auto takes")));
+        .stdout(contains("CPU, ").and(contains("* --device auto takes this one")));
     let output = spherule()
         .args(["devices", "--json"])
         .output()

@@ -264,8 +264,15 @@ fn validation() {
             .expect_err("two buffers are missing");
         assert!(matches!(error, Error::Validation { .. }), "{error:?}");
         assert_says(&error, &["trace_rays"]);
-        // The device lives on.
-        assert!(gpu.read(&rays).is_ok());
+        // The device lives on, and takes the launch once it is right.
+        let spheres = gpu
+            .upload("spheres", &[Sphere::default()])
+            .expect("spheres");
+        let hits = gpu.zeroed::<Hit>("hits", 1).expect("hits");
+        let bindings = [rays.binding(), spheres.binding(), hits.binding()];
+        gpu.launch(&kernel, &bindings, [1, 1, 1])
+            .expect("all is there");
+        assert_eq!(gpu.read(&hits).expect("hits"), [Hit::NONE]);
     }
 }
 

@@ -19,6 +19,7 @@ fn block(language: &str) -> &'static str {
 fn the_scene_is_one() {
     let scene = parse(Path::new("scenes/readme.toml"), block("toml").into()).expect("a scene");
     assert_eq!(scene.world.spheres.len(), 1 + 327);
+    assert_eq!(scene.view.expect("a camera").vertical_fov, 40.0);
     assert_eq!((scene.width, scene.height), (1280, 720));
 }
 

@@ -52,9 +52,10 @@ pub struct Canary {
     pub roots: Share,
     /// The worst square root, in units in the last place.
     pub root_ulps: u32,
-    /// Whether a NaN differs from itself.
+    /// Whether a NaN differs from itself. No rung depends on it: they take a root only where
+    /// comparisons that a NaN fails hold.
     pub finds_nan: bool,
-    /// Whether subnormal results survive.
+    /// Whether subnormal results survive. No rung depends on it inside its domain.
     pub keeps_subnormals: bool,
     /// 64-bit results that are those of IEEE 754; `None` without 64-bit floats.
     pub wide: Option<Share>,
@@ -78,12 +79,32 @@ impl Canary {
         }
     }
 
+    /// Refuses `rung` on this GPU if the canary objects; measures only what the rung needs, which is
+    /// nothing for the lower rungs.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::RungRefused`], and the device's errors.
+    pub fn require_on_gpu(gpu: &Gpu, rung: Rung) -> Result<()> {
+        match rung {
+            Rung::Textbook | Rung::Robust => Ok(()),
+            Rung::Compensated | Rung::Certified => {
+                Self::measure(gpu, false)?.require(rung, gpu.name())
+            }
+            Rung::Double => Self::measure(gpu, gpu.has_f64())?.require(rung, gpu.name()),
+        }
+    }
+
     /// Lets the canary sing on this GPU.
     ///
     /// # Errors
     ///
     /// The device's errors.
     pub fn on_gpu(gpu: &Gpu) -> Result<Self> {
+        Self::measure(gpu, gpu.has_f64())
+    }
+
+    fn measure(gpu: &Gpu, with_f64: bool) -> Result<Self> {
         let operands = operands();
         let bindings = [Access::Read, Access::ReadWrite];
         let input = gpu.upload("operands", &operands)?;
@@ -98,7 +119,7 @@ impl Canary {
         )?;
         let outcomes = gpu.read(&output)?;
 
-        let wide = if gpu.has_f64() {
+        let wide = if with_f64 {
             let output = gpu.zeroed::<WideOutcome>("wide outcomes", operands.len())?;
             let kernel =
                 gpu.kernel(&kernel_module::f64()?, "measure_wide_arithmetic", &bindings)?;
@@ -205,6 +226,8 @@ impl Canary {
                     Some(broken("sums", self.sums))
                 } else if !self.products.is_whole() {
                     Some(broken("products", self.products))
+                // One correction squares the relative error, 2⁻²⁰ at the worst allowed here, and t
+                // needs 2⁻²⁶.
                 } else if self.quotient_ulps > 16 || self.root_ulps > 16 {
                     Some(format!(
                         "quotients are off by up to {} ulp and square roots by up to {}, too many for one correction",

@@ -61,7 +61,7 @@ pub fn intersect_all(device: &Device, rung: Rung, samples: &[(Ray, Sphere)]) -> 
             .map(|(ray, sphere)| intersect(rung.to_u32(), *sphere, ray))
             .collect()),
         Device::Gpu(gpu) => {
-            Canary::on_gpu(gpu)?.require(rung, gpu.name())?;
+            Canary::require_on_gpu(gpu, rung)?;
             intersect_on_gpu(gpu, rung, samples)
         }
     }

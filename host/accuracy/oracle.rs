@@ -130,10 +130,20 @@ impl Intersection {
         }
     }
 
-    /// The smaller root in the ray's interval, rounded; `None` if there is none. The interval is
-    /// decided on the exact root.
+    /// The smaller root in the ray's interval, rounded; `None` if there is none, or if an end of the
+    /// interval is a NaN. The interval is decided on the exact root, where the rungs decide it on the
+    /// rounded one: a root within half a unit in the last place of an end may be told apart.
     #[must_use]
     pub fn nearest(&self, ray: &Ray) -> Option<f32> {
+        if ray.t_min.is_nan() || ray.t_max.is_nan() {
+            return None;
+        }
+        // A float's own largest stands for infinity, which no root reaches.
+        let ray = Ray {
+            t_min: ray.t_min.clamp(f32::MIN, f32::MAX),
+            t_max: ray.t_max.clamp(f32::MIN, f32::MAX),
+            ..*ray
+        };
         [Root::Near, Root::Far].into_iter().find_map(|root| {
             let inside = self.compare(root, ray.t_min)? >= 0 && self.compare(root, ray.t_max)? < 0;
             inside.then(|| self.root(root)).flatten()
@@ -300,7 +310,7 @@ mod tests {
         assert_eq!(hit.root(Root::Near), Some(2.5));
         assert_eq!(hit.root(Root::Far), Some(3.5));
         assert_eq!(hit.side_of_origin(), 1);
-        // (1 − 2.25/9)... the margin of a line through the centre is one.
+        // A line through the centre is as far from touching as can be.
         assert_eq!(hit.margin(), 1.0);
     }
 
@@ -364,8 +374,31 @@ mod tests {
             prop_assert_eq!(round(&BigInt::from(n), &BigInt::from(d), i64::from(e)), expected);
         }
 
-        /// An independent route: the quadratic has the sign that the root's place demands, at the
-        /// floats around the root, in exact rational arithmetic.
+        /// An independent route: integer points on a sphere (x² + y² + z² = r²), seen along
+        /// integer directions from an integer number of steps away, are roots by construction.
+        #[test]
+        fn integer_points_on_spheres_are_roots(
+            quadruple in prop::sample::select(vec![
+                [1, 2, 2, 3], [2, 3, 6, 7], [1, 4, 8, 9], [4, 4, 7, 9], [2, 6, 9, 11], [6, 6, 7, 11],
+                [3, 4, 12, 13], [2, 5, 14, 15], [2, 10, 11, 15], [1, 12, 12, 17], [8, 9, 12, 17],
+            ]),
+            turn in 0_usize..3, signs in 0_u32..8, d in [-50_i32..50, -50_i32..50, -50_i32..50],
+            steps in -300_i32..300, center in [-5000_i32..5000, -5000_i32..5000, -5000_i32..5000],
+        ) {
+            prop_assume!(d != [0, 0, 0]);
+            let [x, y, z, r] = quadruple;
+            let mut point = [x, y, z];
+            point.rotate_left(turn);
+            let sign = |axis: usize| if signs & (1 << axis) == 0 { 1 } else { -1 };
+            let origin: [f32; 3] = std::array::from_fn(|i| (center[i] + sign(i) * point[i] - steps * d[i]) as f32);
+            let hit = line(origin, d.map(|x| x as f32), center.map(|x| x as f32), r as f32);
+            prop_assert!(hit.meets());
+            let roots = [hit.root(Root::Near), hit.root(Root::Far)];
+            prop_assert!(roots.contains(&Some(steps as f32)), "{:?} {}", roots, steps);
+        }
+
+        /// The quadratic has the sign that the root's place demands, at the floats around the root,
+        /// in exact arithmetic.
         #[test]
         fn roots_lie_between_the_floats_around_them(
             o in [float(), float(), float()], d in [float(), float(), float()],

@@ -26,7 +26,7 @@ impl Random {
         xorshifted.rotate_right((old >> 59) as u32)
     }
 
-    /// Uniform in `low..high`.
+    /// Uniform in `low..high`, and `high` itself where the rounding of the sum makes it so.
     pub fn within(&mut self, low: f32, high: f32) -> f32 {
         low + (high - low) * (self.next_u32() >> 8) as f32 / (1 << 24) as f32
     }

@@ -36,7 +36,7 @@ pub(super) struct RenderArguments {
     /// The scene (.toml) or molecule (.pdb, .ent, .xyz)
     pub(super) input: PathBuf,
 
-    /// The image to write: 8-bit PNG, or linear 32-bit float EXR [default: the input's name with .png, here]
+    /// The image to write: 8-bit PNG, or linear 32-bit float EXR [default: the input's name with .png, in the current directory]
     #[arg(short, long, value_name = "OUT.png|OUT.exr", value_parser = image_path)]
     pub(super) output: Option<PathBuf>,
 
@@ -52,11 +52,11 @@ pub(super) struct RenderArguments {
     #[arg(long, value_enum, default_value = "lit")]
     pub(super) shade: Shade,
 
-    /// How rays are intersected: each step costs more and is right more often
+    /// How a ray is intersected with a sphere; the dearer ways are right more often
     #[arg(long, value_enum, default_value = "robust")]
     pub(super) precision: Precision,
 
-    /// Render on the other path too (CPU against GPU), print the difference, and fail above 0.1 % of the pixels off by more than 2/255
+    /// Render on the GPU and on the CPU and compare: fail if more than 0.1 % of the pixels differ by more than 2/255
     #[arg(long)]
     pub(super) check: bool,
 

@@ -15,9 +15,9 @@ pub(super) fn run(arguments: &DevicesArguments) -> Result<ExitCode> {
     let threads = rayon::current_num_threads();
     if arguments.json {
         let value = json!({ "cpu": { "threads": threads }, "adapters": adapters });
-        print(&format!("{value:#}\n"));
+        print(&format!("{value:#}\n"))?;
     } else {
-        print(&table(&adapters, threads));
+        print(&table(&adapters, threads))?;
     }
     Ok(ExitCode::SUCCESS)
 }
@@ -33,7 +33,7 @@ fn table(adapters: &[AdapterReport], threads: usize) -> String {
         let _ = writeln!(
             text,
             "{} {}\n    {} {}, driver {}\n    SPIR-V straight to the driver {}, 64-bit floats {}, timestamps {}\n    \
-             buffers to {:.1} GiB, {:.1} GiB a binding, {} threads a workgroup",
+             buffers to {} MiB, {} MiB a binding, {} threads a workgroup",
             mark(chosen == Some(index)),
             adapter.name,
             adapter.kind,
@@ -42,18 +42,14 @@ fn table(adapters: &[AdapterReport], threads: usize) -> String {
             yes_no(adapter.passthrough),
             yes_no(adapter.f64),
             yes_no(adapter.timestamps),
-            gibibytes(adapter.max_buffer),
-            gibibytes(adapter.max_binding),
+            adapter.max_buffer >> 20,
+            adapter.max_binding >> 20,
             adapter.max_workgroup,
         );
     }
     if adapters.is_empty() {
         text.push_str("  no GPU adapter: this system has no graphics driver that wgpu can use\n");
     }
-    text.push_str("* is what --device auto takes\n");
+    text.push_str("* --device auto takes this one\n");
     text
-}
-
-fn gibibytes(bytes: u64) -> f64 {
-    bytes as f64 / f64::from(1 << 30)
 }

@@ -17,6 +17,8 @@ use tracing_subscriber::prelude::*;
 
 use args::{Arguments, Command};
 
+use crate::error::{Error, Result};
+
 /// Runs the command line of this process.
 #[must_use]
 pub fn main() -> ExitCode {
@@ -37,9 +39,25 @@ pub fn main() -> ExitCode {
     }
 }
 
-/// Prints to stdout; a reader that has gone away is no error.
-fn print(text: &str) {
-    let _ = std::io::stdout().write_all(text.as_bytes());
+/// Prints to stdout; a reader that has gone away is no error, a full disk is.
+fn print(text: &str) -> Result<()> {
+    let mut stdout = std::io::stdout().lock();
+    match stdout
+        .write_all(text.as_bytes())
+        .and_then(|()| stdout.flush())
+    {
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => Err(Error::Image {
+            path: "standard output".into(),
+            reason: format!("cannot be written: {error}"),
+            help: "check where it is redirected to".into(),
+        }),
+        _ => Ok(()),
+    }
+}
+
+/// Prints to stderr, if anybody listens.
+fn note(text: &str) {
+    let _ = writeln!(std::io::stderr(), "{text}");
 }
 
 /// What the library and wgpu log goes to stderr; `SPHERULE_LOG` sets how much, for example

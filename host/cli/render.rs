@@ -7,10 +7,11 @@ use std::time::{Duration, Instant};
 use serde::Serialize;
 
 use super::args::RenderArguments;
-use super::print;
 use super::progress::Bar;
+use super::{note, print};
 use crate::device::{Device, DeviceChoice};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, SceneError};
+use crate::film::Image;
 use crate::film::compare::{Comparison, Tolerance};
 use crate::render::{Rendered, Settings, render};
 use crate::scene::Scene;
@@ -54,7 +55,7 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<ExitCode> {
     let started = Instant::now();
     let say = |text: &str| {
         if !arguments.quiet {
-            eprintln!("{text}");
+            note(text);
         }
     };
 
@@ -62,6 +63,10 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<ExitCode> {
         .output
         .clone()
         .unwrap_or_else(|| default_output(&arguments.input));
+    if let Some(stats) = &arguments.stats {
+        refuse_same_file(stats, &[&arguments.input, &output])?;
+    }
+    Image::check_destination(&output)?;
     let mut scene = Scene::load(&arguments.input)?;
     if let Some(size) = arguments.size {
         (scene.width, scene.height) = (size.width, size.height);
@@ -69,11 +74,24 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<ExitCode> {
     let load = started.elapsed();
 
     let opening = Instant::now();
-    let (device, why) = Device::open(&arguments.device)?;
+    let (mut device, why) = Device::open(&arguments.device)?;
     let opening = opening.elapsed();
+    // Opened before the work, so that a check that cannot be is known at once.
+    let other = match (&device, arguments.check) {
+        (_, false) => None,
+        (Device::Cpu, true) => Some(Device::open(&DeviceChoice::Gpu)?.0),
+        (Device::Gpu(_), true) => Some(Device::Cpu),
+    };
     say(&format!("rendering on {} ({why})", device.name()));
 
-    let rendered = with_bar(arguments, &scene, &device)?;
+    let rendered = match with_bar(arguments, &scene, &device) {
+        Err(error @ Error::RungRefused { .. }) if arguments.device == DeviceChoice::Auto => {
+            device = Device::Cpu;
+            say(&format!("{error}\nrendering on {} instead", device.name()));
+            with_bar(arguments, &scene, &device)?
+        }
+        done => done?,
+    };
     let image = &rendered.image;
     let encoding = Instant::now();
     image.save(&output)?;
@@ -86,19 +104,22 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<ExitCode> {
         ));
     }
     say(&format!(
-        "wrote {}: {} × {} pixels, {} spheres, {}",
+        "wrote {}: {} × {} pixels, {} {}, {}",
         output.display(),
         image.width(),
         image.height(),
         scene.world.spheres.len(),
+        if scene.world.spheres.len() == 1 {
+            "sphere"
+        } else {
+            "spheres"
+        },
         human(total),
     ));
 
-    let check = if arguments.check {
-        Some(check(arguments, &scene, &device, &rendered)?)
-    } else {
-        None
-    };
+    let check = other
+        .map(|other| check(arguments, &scene, &other, &rendered))
+        .transpose()?;
     let passed = check.as_ref().is_none_or(|check| check.passed);
     if let Some(path) = &arguments.stats {
         let rays = u64::from(scene.width) * u64::from(scene.height);
@@ -142,18 +163,28 @@ fn with_bar(arguments: &RenderArguments, scene: &Scene, device: &Device) -> Resu
     render(scene, settings, device, &|done| bar.set(done))
 }
 
+/// Statistics must not land in the scene or in the image.
+fn refuse_same_file(stats: &Path, others: &[&Path]) -> Result<()> {
+    let full = |path: &Path| std::path::absolute(path).unwrap_or_else(|_| path.into());
+    if others.iter().any(|other| full(stats) == full(other)) {
+        return Err(SceneError::without_place(
+            stats,
+            "--stats names the same file as the input or the image",
+            "give the statistics a file of their own",
+        )
+        .into());
+    }
+    Ok(())
+}
+
 /// Renders on the other path and compares.
 fn check(
     arguments: &RenderArguments,
     scene: &Scene,
-    device: &Device,
+    other: &Device,
     rendered: &Rendered,
 ) -> Result<Check> {
-    let other = match device {
-        Device::Cpu => Device::open(&DeviceChoice::Gpu)?.0,
-        Device::Gpu(_) => Device::Cpu,
-    };
-    let again = with_bar(arguments, scene, &other)?;
+    let again = with_bar(arguments, scene, other)?;
     let comparison = Comparison::of(&rendered.image, &again.image, Tolerance::default())
         .ok_or_else(|| Error::Image {
             path: PathBuf::new(),
@@ -162,9 +193,9 @@ fn check(
         })?;
     let passed = comparison.is_within();
     if !arguments.quiet {
-        eprintln!(
+        note(&format!(
             "{}: against {}, largest difference {:.2}/255, mean {:.5}/255, {} of {} pixels off by more than {}/255 \
-             ({:.1} % may be)",
+             (limit {:.1} %)",
             if passed {
                 "check passed"
             } else {
@@ -177,7 +208,7 @@ fn check(
             comparison.pixels,
             comparison.tolerance.channel,
             comparison.tolerance.share * 100.0,
-        );
+        ));
     }
     Ok(Check {
         against: other.name(),
@@ -195,15 +226,16 @@ fn write_stats(path: &Path, stats: &Stats) -> Result<()> {
     let text =
         serde_json::to_string_pretty(stats).map_err(|error| failed(error.to_string()))? + "\n";
     if path == Path::new("-") {
-        print(&text);
-        return Ok(());
+        return print(&text);
     }
     std::fs::write(path, text).map_err(|error| failed(format!("cannot be written: {error}")))
 }
 
 /// The input's name with `.png`, in the current directory.
 fn default_output(input: &Path) -> PathBuf {
-    PathBuf::from(input.file_stem().unwrap_or(input.as_os_str())).with_extension("png")
+    let mut name = input.file_stem().unwrap_or(input.as_os_str()).to_owned();
+    name.push(".png");
+    name.into()
 }
 
 fn human(duration: Duration) -> String {

@@ -23,12 +23,24 @@ pub(super) fn print(error: &Error) {
     if rendered.is_err() {
         text = format!("{error}\n{}\n", error.help());
     }
-    eprint!("{text}");
+    super::note(text.trim_end_matches('\n'));
 }
 
 fn supports_color() -> bool {
     use std::io::IsTerminal;
     std::io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none()
+}
+
+/// The text without control characters, which a terminal would obey; byte for byte as long, so
+/// that spans still fit.
+fn printable(text: &str) -> String {
+    text.chars()
+        .flat_map(|c| {
+            let bad = c.is_control() && !matches!(c, '\n' | '\r' | '\t');
+            let (c, count) = if bad { ('?', c.len_utf8()) } else { (c, 1) };
+            std::iter::repeat_n(c, count)
+        })
+        .collect()
 }
 
 /// An [`Error`] with what miette needs to point at its place.
@@ -41,16 +53,15 @@ struct Report {
 
 impl Report {
     fn new(error: &Error) -> Self {
-        let mut message = error.to_string();
         let place = match error {
             Error::Scene(scene) => scene.place.as_ref().map(|place| {
-                let (line, column) = place.line_column();
-                let name = scene.path.display().to_string();
-                message = format!("{name}:{line}:{column}: {message}");
                 (
-                    NamedSource::new(name, place.text.clone()),
+                    NamedSource::new(
+                        printable(&scene.path.display().to_string()),
+                        printable(&place.text),
+                    ),
                     LabeledSpan::new(
-                        Some(place.label.clone()),
+                        Some(printable(&place.label)),
                         place.span.start,
                         place.span.len(),
                     ),
@@ -58,9 +69,12 @@ impl Report {
             }),
             _ => None,
         };
+        // An excerpt of lines that no terminal shows in a piece helps nobody.
+        let place =
+            place.filter(|(source, _)| source.inner().lines().all(|line| line.len() < 1000));
         Self {
-            message,
-            help: error.help(),
+            message: printable(&error.to_string()),
+            help: printable(&error.help()),
             place,
         }
     }

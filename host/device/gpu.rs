@@ -282,7 +282,7 @@ impl Gpu {
     }
 
     fn shader_module(&self, module: &Module) -> wgpu::ShaderModule {
-        if !self.passthrough {
+        if !(self.passthrough && module.is_trusted()) {
             return self
                 .device
                 .create_shader_module(wgpu::ShaderModuleDescriptor {
@@ -298,9 +298,8 @@ impl Gpu {
                 workgroup_size: entry.workgroup_size.into(),
             })
             .collect();
-        // SAFETY: the words reach the driver unseen by wgpu. `Module` has checked their
-        // structure; that they are valid Vulkan SPIR-V is rust-gpu's promise, which runs
-        // spirv-val on all that it emits.
+        // SAFETY: the words reach the driver unseen by wgpu; whoever called `Module::trusted`
+        // promised that they are valid Vulkan SPIR-V.
         unsafe {
             self.device
                 .create_shader_module_passthrough(wgpu::ShaderModuleDescriptorPassthrough {
@@ -338,8 +337,8 @@ impl Gpu {
             })
     }
 
-    /// Uploads `data` into storage. An empty slice becomes one element of zeros, because there
-    /// are no empty buffers.
+    /// Uploads `data` into storage. An empty slice becomes one element all of whose bits are set,
+    /// because there are no empty buffers: a float in it is a NaN, and a sphere in it is missed.
     ///
     /// # Errors
     ///
@@ -410,23 +409,27 @@ impl Gpu {
         data: &[T],
         usage: wgpu::BufferUsages,
     ) -> Result<Buffer<T>> {
-        let zero = [T::zeroed()];
-        let len = data.len();
-        let data = if data.is_empty() { &zero } else { data };
         let size = self.storage_size::<T>(label, data.len(), usage)?;
+        let bytes: &[u8] = bytemuck::cast_slice(data);
+        let nothing = vec![0xff; if data.is_empty() { size as usize } else { 0 }];
+        let bytes = if data.is_empty() { &nothing } else { bytes };
         let during = format!("uploading {label}");
-        let raw = self.watch.checked(&self.device, &during, || {
+        let (raw, filled) = self.watch.checked(&self.device, &during, || {
             let raw = self.create_buffer(label, size, usage, true);
             // Where the allocation failed there is nothing to map, and the scope says why.
-            if let Ok(mut mapped) = raw.get_mapped_range_mut(..) {
-                let bytes: &[u8] = bytemuck::cast_slice(data);
+            let filled = raw.get_mapped_range_mut(..).map(|mut mapped| {
                 mapped.slice(..bytes.len()).copy_from_slice(bytes);
-                drop(mapped);
+            });
+            if filled.is_ok() {
                 raw.unmap();
             }
-            raw
+            (raw, filled)
         })?;
-        Ok(Buffer::from_raw(raw, label, len))
+        filled.map_err(|error| Error::Validation {
+            during,
+            reason: one_line(&error),
+        })?;
+        Ok(Buffer::from_raw(raw, label, data.len()))
     }
 
     fn create_buffer(
@@ -491,7 +494,7 @@ impl Gpu {
             .map(|timer| timer.lock().unwrap_or_else(PoisonError::into_inner));
         let timer = timer.as_deref();
         let started = Instant::now();
-        let (submission, mapped) = self.watch.checked(&self.device, &during, || {
+        let submission = self.watch.checked(&self.device, &during, || {
             let group = self.bind_group(kernel, bindings);
             let mut encoder = self.encoder(&kernel.name);
             {
@@ -507,9 +510,10 @@ impl Gpu {
             if let Some(timer) = timer {
                 timer.resolve(&mut encoder);
             }
-            let submission = self.queue.submit([encoder.finish()]);
-            (submission, timer.map(Timer::map))
+            self.queue.submit([encoder.finish()])
         })?;
+        // Only after a submission that was taken: a mapped buffer must not be written to.
+        let mapped = timer.map(Timer::map);
         self.watch
             .wait(&self.device, submission, self.timeout, &during)?;
         let host = started.elapsed();

@@ -41,6 +41,7 @@ pub struct Module {
     words: Vec<u32>,
     entry_points: Vec<EntryPoint>,
     needs_f64: bool,
+    is_trusted: bool,
 }
 
 impl fmt::Debug for Module {
@@ -140,7 +141,30 @@ impl Module {
             words,
             entry_points,
             needs_f64,
+            is_trusted: false,
         })
+    }
+
+    /// Lets the words go to the driver as they are, where it takes SPIR-V. A module that is not
+    /// trusted goes through naga everywhere, which validates it, and which keeps no compensated
+    /// arithmetic.
+    ///
+    /// # Safety
+    ///
+    /// The words must be valid SPIR-V for Vulkan: a driver may do anything with others. What
+    /// rust-gpu emits is, unless somebody changed it. The kernel must also use its buffers as the
+    /// `Access` list given to [`Gpu::kernel`](super::Gpu::kernel) says, because nothing checks
+    /// that on this path.
+    #[must_use]
+    pub unsafe fn trusted(mut self) -> Self {
+        self.is_trusted = true;
+        self
+    }
+
+    /// Whether [`Module::trusted`] was called.
+    #[must_use]
+    pub fn is_trusted(&self) -> bool {
+        self.is_trusted
     }
 
     /// The name given for messages.

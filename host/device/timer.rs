@@ -71,12 +71,14 @@ impl Timer {
     pub(super) fn elapsed(&self, mapped: &Mapped) -> Option<Duration> {
         mapped.try_recv().ok()?.ok()?;
         let ticks = {
-            let view = self.readable.get_mapped_range(..).ok()?;
-            let ticks: Vec<u64> = bytemuck::pod_collect_to_vec(&view[..]);
-            ticks[1].checked_sub(ticks[0])?
+            let view = self.readable.get_mapped_range(..);
+            view.ok().and_then(|view| {
+                let ticks: Vec<u64> = bytemuck::pod_collect_to_vec(&view[..]);
+                ticks[1].checked_sub(ticks[0])
+            })
         };
         self.readable.unmap();
-        (ticks > 0).then(|| {
+        ticks.filter(|ticks| *ticks > 0).map(|ticks| {
             Duration::from_secs_f64(ticks as f64 * f64::from(self.nanoseconds_per_tick) * 1e-9)
         })
     }

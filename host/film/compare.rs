@@ -36,7 +36,8 @@ pub struct Comparison {
     pub largest: f32,
     /// The mean difference of a channel, in 255ths.
     pub mean: f64,
-    /// How many pixels differ by more than the tolerance.
+    /// How many pixels differ by more than the tolerance, or hit in one image and miss in the
+    /// other.
     pub differing: usize,
     /// How many pixels there are.
     pub pixels: usize,
@@ -56,20 +57,22 @@ impl Comparison {
         {
             return None;
         }
-        let encoder = Encoder::of(first);
+        let encoder = Encoder::of_both(first, second);
         let (largest, sum, differing) = first
             .pixels
             .par_iter()
             .zip(&second.pixels)
             .map(|(a, b)| {
+                let (a_hits, b_hits) = (a.is_hit(), b.is_hit());
                 let (a, b) = (encoder.encode(a), encoder.encode(b));
                 let differences = [0, 1, 2].map(|channel| (a[channel] - b[channel]).abs() * 255.0);
                 let largest = differences.into_iter().fold(0.0, f32::max);
                 let sum: f64 = differences.into_iter().map(f64::from).sum();
                 // Written so that a NaN differs.
-                let same = differences
+                let same_color = differences
                     .iter()
                     .all(|difference| *difference <= tolerance.channel);
+                let same = same_color && a_hits == b_hits;
                 (largest, sum, usize::from(!same))
             })
             .reduce(

@@ -66,6 +66,16 @@ impl Encoder {
         }
     }
 
+    /// With a depth range that holds both images.
+    pub(super) fn of_both(first: &Image, second: &Image) -> Self {
+        let (first, second) = (Self::of(first), Self::of(second));
+        Self {
+            near: first.near.min(second.near),
+            far: first.far.max(second.far),
+            ..first
+        }
+    }
+
     /// The pixel's channels, each between 0 and 1.
     pub(super) fn encode(&self, pixel: &Pixel) -> [f32; 3] {
         let color = pixel.color().to_array();

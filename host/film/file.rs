@@ -1,6 +1,6 @@
 //! PNG and EXR files, written whole or not at all.
 
-use std::io::{BufWriter, Write};
+use std::io::{BufWriter, Seek, Write};
 use std::path::Path;
 
 use image::codecs::openexr::OpenExrEncoder;
@@ -51,17 +51,12 @@ impl Image {
     pub fn save(&self, path: impl AsRef<Path>) -> Result<()> {
         let path = path.as_ref();
         let format = Format::of(path)?;
-        if path.is_dir() {
-            return Err(failed(path, "is a directory", "name a file"));
-        }
-        let directory = match path.parent() {
-            Some(parent) if !parent.as_os_str().is_empty() => parent,
-            _ => Path::new("."),
-        };
+        Self::check_destination(path)?;
         let cannot_write = |error: std::io::Error| {
+            // The kind alone: the rest names the temporary file.
             failed(
                 path,
-                format!("cannot be written: {error}"),
+                format!("cannot be written: {}", error.kind()),
                 "check that the directory exists, may be written and has room",
             )
         };
@@ -70,7 +65,9 @@ impl Image {
         // What any new file gets, less the umask, instead of a temporary file's privacy.
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-        let mut file = builder.tempfile_in(directory).map_err(cannot_write)?;
+        let mut file = builder
+            .tempfile_in(directory_of(path))
+            .map_err(cannot_write)?;
         {
             let mut writer = BufWriter::with_capacity(1 << 20, file.as_file_mut());
             self.encode_as(format, &mut writer)
@@ -89,7 +86,36 @@ impl Image {
         Ok(())
     }
 
-    fn encode_as(&self, format: Format, writer: &mut impl Write) -> image::ImageResult<()> {
+    /// Whether an image can be written to `path`, as far as that can be told beforehand.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Image`] if the extension is unknown, the path is a directory, or its directory does
+    /// not exist.
+    pub fn check_destination(path: &Path) -> Result<()> {
+        Format::of(path)?;
+        if path.is_dir() {
+            return Err(failed(path, "is a directory", "name a file"));
+        }
+        let directory = directory_of(path);
+        if !directory.is_dir() {
+            return Err(failed(
+                path,
+                format!(
+                    "cannot be written: there is no directory {}",
+                    directory.display()
+                ),
+                "make the directory, or name another",
+            ));
+        }
+        Ok(())
+    }
+
+    fn encode_as(
+        &self,
+        format: Format,
+        writer: &mut (impl Write + Seek),
+    ) -> image::ImageResult<()> {
         match format {
             Format::Png => {
                 PngEncoder::new_with_quality(writer, CompressionType::Fast, FilterType::Adaptive)
@@ -106,17 +132,21 @@ impl Image {
                     .iter()
                     .flat_map(|pixel| pixel.color().to_array())
                     .collect();
-                let mut bytes = std::io::Cursor::new(Vec::new());
-                OpenExrEncoder::new(&mut bytes).write_image(
+                OpenExrEncoder::new(writer).write_image(
                     bytemuck::cast_slice(&floats),
                     self.width,
                     self.height,
                     ExtendedColorType::Rgb32F,
-                )?;
-                writer.write_all(bytes.get_ref())?;
-                Ok(())
+                )
             }
         }
+    }
+}
+
+fn directory_of(path: &Path) -> &Path {
+    match path.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
     }
 }
 

@@ -12,6 +12,8 @@ pub mod file;
 
 use spherule_kernel::{Pixel, Shading};
 
+use crate::error::{Error, Result};
+
 /// A rendered image: linear colours or measurements, row by row from the upper left.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Image {
@@ -19,6 +21,26 @@ pub struct Image {
     height: u32,
     shading: Shading,
     pixels: Vec<Pixel>,
+}
+
+/// Room for the pixels of an image.
+///
+/// # Errors
+///
+/// [`Error::OutOfMemory`] if the host has not that much.
+pub fn allocate(width: u32, height: u32) -> Result<Vec<Pixel>> {
+    let failed = || Error::OutOfMemory {
+        device: "the host".into(),
+        during: format!(
+            "making room for {width} × {height} pixels, {:.1} GiB",
+            f64::from(width) * f64::from(height) * size_of::<Pixel>() as f64 / f64::from(1 << 30)
+        ),
+    };
+    let count = usize::try_from(u64::from(width) * u64::from(height)).map_err(|_| failed())?;
+    let mut pixels = Vec::new();
+    pixels.try_reserve_exact(count).map_err(|_| failed())?;
+    pixels.resize(count, Pixel::default());
+    Ok(pixels)
 }
 
 impl Image {

@@ -8,6 +8,8 @@ use spherule_kernel::film::render_pixel;
 use spherule_kernel::{Launch, Pixel, Rung, Shading};
 
 use super::{Progress, Settings};
+use crate::error::Result;
+use crate::film;
 use crate::scene::World;
 
 /// Rows in a band: small enough to share the work out evenly, large enough that handing it out
@@ -15,13 +17,16 @@ use crate::scene::World;
 const BAND_ROWS: usize = 4;
 
 /// Renders `launch`, which covers a whole image, on every thread of the pool.
-#[must_use]
+///
+/// # Errors
+///
+/// [`OutOfMemory`](crate::Error::OutOfMemory) if the host has no room for the image.
 pub fn render(
     launch: &Launch,
     world: &World,
     settings: Settings,
     progress: Progress<'_>,
-) -> Vec<Pixel> {
+) -> Result<Vec<Pixel>> {
     const TEXTBOOK: u32 = Rung::Textbook.to_u32();
     const ROBUST: u32 = Rung::Robust.to_u32();
     const COMPENSATED: u32 = Rung::Compensated.to_u32();
@@ -34,7 +39,10 @@ pub fn render(
         Rung::Double => bands_on::<DOUBLE>,
         Rung::Certified => bands_on::<CERTIFIED>,
     };
-    bands(launch, world, settings.shading, progress)
+    let size = launch.tile_size;
+    let mut pixels = film::allocate(size.x, size.y)?;
+    bands(launch, world, settings.shading, progress, &mut pixels);
+    Ok(pixels)
 }
 
 fn bands_on<const RUNG: u32>(
@@ -42,16 +50,17 @@ fn bands_on<const RUNG: u32>(
     world: &World,
     shading: Shading,
     progress: Progress<'_>,
-) -> Vec<Pixel> {
+    pixels: &mut [Pixel],
+) {
     const LIT: u32 = Shading::Lit.to_u32();
     const NORMALS: u32 = Shading::Normals.to_u32();
     const DEPTH: u32 = Shading::Depth.to_u32();
     const FLAT: u32 = Shading::Flat.to_u32();
     match shading {
-        Shading::Lit => bands::<LIT, RUNG>(launch, world, progress),
-        Shading::Normals => bands::<NORMALS, RUNG>(launch, world, progress),
-        Shading::Depth => bands::<DEPTH, RUNG>(launch, world, progress),
-        Shading::Flat => bands::<FLAT, RUNG>(launch, world, progress),
+        Shading::Lit => bands::<LIT, RUNG>(launch, world, progress, pixels),
+        Shading::Normals => bands::<NORMALS, RUNG>(launch, world, progress, pixels),
+        Shading::Depth => bands::<DEPTH, RUNG>(launch, world, progress, pixels),
+        Shading::Flat => bands::<FLAT, RUNG>(launch, world, progress, pixels),
     }
 }
 
@@ -60,10 +69,10 @@ fn bands<const SHADING: u32, const RUNG: u32>(
     launch: &Launch,
     world: &World,
     progress: Progress<'_>,
-) -> Vec<Pixel> {
+    pixels: &mut [Pixel],
+) {
     let width = launch.tile_size.x as usize;
     let height = launch.tile_size.y as usize;
-    let mut pixels = vec![Pixel::default(); width * height];
     let rows_done = AtomicUsize::new(0);
     pixels
         .par_chunks_mut(width * BAND_ROWS)
@@ -89,5 +98,4 @@ fn bands<const SHADING: u32, const RUNG: u32>(
             let done = rows_done.fetch_add(rows, Ordering::Relaxed) + rows;
             progress(done as f64 / height as f64);
         });
-    pixels
 }

@@ -3,13 +3,14 @@
 use std::time::{Duration, Instant};
 
 use glam::UVec2;
-use spherule_kernel::{Launch, Material, Pixel, Rung, Shading, Sphere};
+use spherule_kernel::{Launch, Material, Pixel, Shading, Sphere};
 
 use super::pace::Pace;
 use super::{Progress, Settings, Timings};
 use crate::accuracy::canary::Canary;
 use crate::device::{Access, Buffer, Gpu, Kernel};
 use crate::error::{Error, Result};
+use crate::film;
 use crate::kernel_module;
 use crate::scene::World;
 
@@ -48,9 +49,7 @@ pub fn render_paced(
     mut pace: Pace,
 ) -> Result<(Vec<Pixel>, Timings)> {
     let started = Instant::now();
-    if !matches!(settings.rung, Rung::Textbook | Rung::Robust) {
-        Canary::on_gpu(gpu)?.require(settings.rung, gpu.name())?;
-    }
+    Canary::require_on_gpu(gpu, settings.rung)?;
     let module = kernel_module::for_rung(settings.rung)?
         .specialise(Shading::SPEC_ID, settings.shading.to_u32())?;
     let kernel = gpu.kernel(
@@ -83,7 +82,7 @@ pub fn render_paced(
         ..Timings::default()
     };
 
-    let mut image = vec![Pixel::default(); size.x as usize * size.y as usize];
+    let mut image = film::allocate(size.x, size.y)?;
     let mut origin = UVec2::ZERO;
     while origin.y < size.y {
         let left = size - origin;

@@ -91,7 +91,7 @@ pub fn render(
     match device {
         Device::Cpu => {
             let started = Instant::now();
-            let pixels = cpu::render(&launch, &scene.world, settings, progress);
+            let pixels = cpu::render(&launch, &scene.world, settings, progress)?;
             let timings = Timings {
                 trace: started.elapsed(),
                 ..Timings::default()
@@ -114,6 +114,20 @@ pub fn render(
 /// The launch that covers the whole image and every sphere; tiles and runs are cut out of it.
 fn whole_image(scene: &Scene) -> Result<Launch> {
     let world = &scene.world;
+    if let Some(id) = world
+        .material_ids
+        .iter()
+        .find(|id| **id as usize >= world.materials.len())
+    {
+        return Err(Error::Scene(SceneError::without_place(
+            "",
+            format!(
+                "a sphere has the material {id}, and the world has {} materials",
+                world.materials.len()
+            ),
+            "add the material first; World::add_material returns its index",
+        )));
+    }
     if world.spheres.len() != world.material_ids.len() {
         return Err(Error::Scene(SceneError::without_place(
             "",

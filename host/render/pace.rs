@@ -13,6 +13,9 @@ const TARGET: Duration = Duration::from_millis(200);
 /// The first launch's work, in intersections: a second on the slowest software adapter seen, a
 /// quarter of a millisecond on a fast GPU.
 const FIRST: u64 = 1 << 27;
+/// No tile is smaller than this, however many spheres there are: fewer threads leave a GPU idle,
+/// and then a launch takes as long however little it does. The spheres are split instead.
+const MIN_TILE_PIXELS: u64 = 1 << 16;
 /// The bounds on any launch's work.
 const RANGE: (u64, u64) = (1 << 20, 1 << 42);
 
@@ -44,7 +47,9 @@ impl Pace {
     /// (the rest of the current row, and the rows below it).
     #[must_use]
     pub fn tile(&self, width: u32, left: UVec2, max_pixels: u64, spheres: u64) -> UVec2 {
-        let pixels = (self.intersections / spheres.max(1)).clamp(1, max_pixels.max(1));
+        let pixels = (self.intersections / spheres.max(1))
+            .max(MIN_TILE_PIXELS)
+            .min(max_pixels.max(1));
         let row_is_whole = left.x == width;
         if row_is_whole && pixels >= u64::from(width) {
             let rows = (pixels / u64::from(width)).min(u64::from(left.y));
@@ -107,6 +112,15 @@ mod tests {
             }
             assert_eq!(covered, u64::from(width) * u64::from(height));
         }
+    }
+
+    #[test]
+    fn tiles_keep_a_gpu_busy_however_many_spheres_there_are() {
+        let mut pace = Pace::default();
+        pace.learn(1 << 20, Duration::from_secs(100));
+        let tile = pace.tile(1920, UVec2::new(1920, 1080), 1 << 23, 1 << 32);
+        assert!(u64::from(tile.x) * u64::from(tile.y) > MIN_TILE_PIXELS - 1920);
+        assert_eq!(pace.spheres(MIN_TILE_PIXELS), 16);
     }
 
     #[test]

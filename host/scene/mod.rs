@@ -23,6 +23,10 @@ pub use world::World;
 /// The largest width or height of an image, in pixels.
 pub const MAX_IMAGE_SIDE: u32 = 65_536;
 
+/// The largest coordinate or radius, in scene units: the sum of three squares of twice this is
+/// still a 32-bit float.
+pub const MAX_LENGTH: f32 = 1e18;
+
 /// A world, a view of it, and the image to make.
 #[derive(Clone, Debug)]
 pub struct Scene {
@@ -69,7 +73,7 @@ impl Scene {
             extension if molecule::is_molecule(extension) => Ok(Self::new(molecule::load(path)?)),
             _ => Err(Error::Scene(SceneError::without_place(
                 path,
-                format!("{}: not a kind of file that spherule reads", path.display()),
+                "not a kind of file that spherule reads",
                 "give a scene (.toml) or a molecule (.pdb, .ent or .xyz)",
             ))),
         }
@@ -101,15 +105,15 @@ fn read_text(path: &Path) -> Result<String> {
     let bytes = std::fs::read(path).map_err(|error| {
         let (message, help) = match error.kind() {
             std::io::ErrorKind::NotFound => (
-                format!("{}: there is no such file", path.display()),
+                "there is no such file".to_owned(),
                 "check the name; a relative name counts from the current directory, or, inside a scene, from the scene's",
             ),
             std::io::ErrorKind::IsADirectory => (
-                format!("{}: is a directory", path.display()),
+                "is a directory".to_owned(),
                 "name a file",
             ),
             _ => (
-                format!("{}: cannot be read: {error}", path.display()),
+                format!("cannot be read: {error}"),
                 "check that the file may be read",
             ),
         };
@@ -119,7 +123,7 @@ fn read_text(path: &Path) -> Result<String> {
         let at = error.utf8_error().valid_up_to();
         Error::Scene(SceneError::without_place(
             path,
-            format!("{}: byte {at} is not UTF-8 text", path.display()),
+            format!("byte {at} is not UTF-8 text"),
             "save the file as UTF-8; compressed files must be unpacked first",
         ))
     })

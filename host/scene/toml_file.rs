@@ -8,7 +8,7 @@ use serde::Deserialize;
 use spherule_kernel::{Material, Sphere};
 use toml::Spanned;
 
-use super::{MAX_IMAGE_SIDE, Scene, View, World, molecule, read_text};
+use super::{MAX_IMAGE_SIDE, MAX_LENGTH, Scene, View, World, molecule, read_text};
 use crate::error::{Error, Place, Result, SceneError};
 
 /// The file as written; every value keeps its span.
@@ -30,15 +30,15 @@ struct File {
 struct ImageTable {
     width: Option<Spanned<i64>>,
     height: Option<Spanned<i64>>,
-    background: Option<Spanned<[f64; 3]>>,
+    background: Option<Spanned<Vec<f64>>>,
 }
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct CameraTable {
-    eye: Spanned<[f64; 3]>,
-    target: Spanned<[f64; 3]>,
-    up: Option<Spanned<[f64; 3]>>,
+    eye: Spanned<Vec<f64>>,
+    target: Spanned<Vec<f64>>,
+    up: Option<Spanned<Vec<f64>>>,
     vertical_fov: Option<Spanned<f64>>,
 }
 
@@ -46,7 +46,7 @@ struct CameraTable {
 #[serde(deny_unknown_fields)]
 struct MaterialTable {
     kind: MaterialKind,
-    color: Spanned<[f64; 3]>,
+    color: Spanned<Vec<f64>>,
 }
 
 #[derive(Deserialize)]
@@ -58,7 +58,7 @@ enum MaterialKind {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct SphereTable {
-    center: Spanned<[f64; 3]>,
+    center: Spanned<Vec<f64>>,
     radius: Spanned<f64>,
     material: Option<Spanned<String>>,
 }
@@ -177,7 +177,7 @@ impl Reader<'_> {
         if world.spheres.is_empty() {
             return Err(SceneError::without_place(
                 self.path,
-                format!("{}: the scene has no spheres", self.path.display()),
+                "the scene has no spheres",
                 "add a [[sphere]] with center and radius, or [particles] with a file",
             )
             .into());
@@ -205,7 +205,7 @@ impl Reader<'_> {
             // A file that is not there is a mistake in the scene; one that is there but wrong
             // says more about itself than its name here does.
             Error::Scene(inner) if inner.place.is_none() => self
-                .wrong(file, inner.message, "named here", inner.help)
+                .wrong(file, inner.to_string(), "named here", inner.help)
                 .into(),
             other => other,
         })
@@ -277,35 +277,55 @@ impl Reader<'_> {
 
     fn radius(&self, value: &Spanned<f64>) -> Result<f32> {
         let radius = *value.get_ref() as f32;
-        if radius.is_finite() && radius > 0.0 {
+        if radius > 0.0 && radius <= MAX_LENGTH {
             return Ok(radius);
         }
         Err(self
             .wrong(
                 value,
                 format!("a radius of {} is not possible", value.get_ref()),
-                "must be above zero and finite",
-                "give a radius above zero that a 32-bit float can hold",
+                "must be above zero",
+                format!("give a radius above zero and below {MAX_LENGTH:e}"),
             )
             .into())
     }
 
-    fn vector(&self, name: &str, value: &Spanned<[f64; 3]>) -> Result<Vec3> {
-        let vector = Vec3::from_array(value.get_ref().map(|x| x as f32));
-        if vector.is_finite() {
-            return Ok(vector);
+    fn vector(&self, name: &str, value: &Spanned<Vec<f64>>) -> Result<Vec3> {
+        let Ok([x, y, z]) = <[f64; 3]>::try_from(value.get_ref().as_slice()) else {
+            return Err(self
+                .wrong(
+                    value,
+                    format!("{name} has {} numbers", value.get_ref().len()),
+                    "not three",
+                    "give three numbers: [x, y, z], or [red, green, blue]",
+                )
+                .into());
+        };
+        let vector = Vec3::new(x as f32, y as f32, z as f32);
+        if !vector.is_finite() {
+            return Err(self
+                .wrong(
+                    value,
+                    format!("{name} is not finite"),
+                    "NaN, infinite or too large",
+                    "give three numbers that 32-bit floats can hold",
+                )
+                .into());
         }
-        Err(self
-            .wrong(
-                value,
-                format!("{name} is not finite"),
-                "NaN, infinite or too large",
-                "give three numbers that 32-bit floats can hold",
-            )
-            .into())
+        if vector.abs().max_element() > MAX_LENGTH {
+            return Err(self
+                .wrong(
+                    value,
+                    format!("{name} is too large"),
+                    "its square overflows",
+                    format!("stay below {MAX_LENGTH:e}: use a larger unit of length"),
+                )
+                .into());
+        }
+        Ok(vector)
     }
 
-    fn color(&self, name: &str, value: &Spanned<[f64; 3]>) -> Result<Vec3> {
+    fn color(&self, name: &str, value: &Spanned<Vec<f64>>) -> Result<Vec3> {
         let color = self.vector(name, value)?;
         if color.min_element() >= 0.0 {
             return Ok(color);
@@ -320,7 +340,7 @@ impl Reader<'_> {
             .into())
     }
 
-    fn reflectance(&self, value: &Spanned<[f64; 3]>) -> Result<Vec3> {
+    fn reflectance(&self, value: &Spanned<Vec<f64>>) -> Result<Vec3> {
         let color = self.color("color", value)?;
         if color.max_element() <= 1.0 {
             return Ok(color);
@@ -411,7 +431,7 @@ radius = 100
             ("width = 4", "wdith = 4", 3, "unknown field"),
             ("width = 4", "width = 99999", 3, "99999"),
             ("[0, 0.5, 1]", "[0, -0.5, 1]", 5, "below zero"),
-            ("[0, 0.5, 1]", "[0, 0.5]", 5, "invalid length"),
+            ("[0, 0.5, 1]", "[0, 0.5]", 5, "2 numbers"),
             ("[camera]", "[lens]", 7, "unknown field"),
             (
                 "eye = [0, 0, 0]",
@@ -431,6 +451,8 @@ radius = 100
                 8,
                 "eye is not finite",
             ),
+            ("eye = [0, 0, 0]", "eye = [0, 2e18, 0]", 8, "too large"),
+            ("eye = [0, 0, 0]", "eye = [0, 0, 0, 0]", 8, "4 numbers"),
             ("eye = [0, 0, 0]", "", 7, "missing field `eye`"),
             ("target = [0, 0, -1]", "target = [0, 0, 0]", 9, "same point"),
             (

@@ -16,6 +16,9 @@ static SPIRV: &[u8] = include_bytes!(env!("OWN_KERNEL_SPV"));
 /// The device's errors.
 pub fn rooms_on_gpu(gpu: &Gpu, grid: &Grid, spheres: &[Sphere]) -> spherule::Result<Vec<Room>> {
     let module = Module::from_bytes("own-kernel", SPIRV)?;
+    // SAFETY: these are the words that rust-gpu emitted, and the bindings below are those of the
+    // entry point. Without this the module would go through naga, which is safe and slower.
+    let module = unsafe { module.trusted() };
     let kernel = gpu.kernel(
         &module,
         "measure_rooms",
@@ -44,10 +47,12 @@ pub fn rooms_on_cpu(grid: &Grid, spheres: &[Sphere]) -> Vec<Room> {
         .collect()
 }
 
-/// A cubic grid of `points_per_side` points a side that holds every sphere.
+/// A cubic grid of `points_per_side` points a side, 2 to 128, that holds every sphere.
 #[must_use]
 pub fn grid_around(spheres: &[Sphere], points_per_side: u32) -> Grid {
-    let (mut low, mut high) = (spheres[0].center(), spheres[0].center());
+    let points_per_side = points_per_side.clamp(2, 128);
+    let first = spheres.first().map(Sphere::center).unwrap_or_default();
+    let (mut low, mut high) = (first, first);
     for sphere in spheres {
         low = low.min(sphere.center() - sphere.radius());
         high = high.max(sphere.center() + sphere.radius());

@@ -39,6 +39,11 @@ pub const UNKNOWN: Element = element("?", 2.0, Unknown, 0xFF1493);
 /// The element with this symbol, whatever the case.
 #[must_use]
 pub fn by_symbol(symbol: &str) -> Option<&'static Element> {
+    // Deuterium and tritium, as neutron structures name them.
+    let symbol = match symbol {
+        "D" | "d" | "T" | "t" => "H",
+        other => other,
+    };
     ELEMENTS
         .iter()
         .find(|element| element.symbol.eq_ignore_ascii_case(symbol))

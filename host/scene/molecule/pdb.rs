@@ -33,6 +33,7 @@ pub fn parse(text: &str) -> Result<Vec<Atom>, WrongLine> {
     let mut first_location: HashMap<&[u8], u8> = HashMap::new();
     let mut last_line = 0;
     let mut is_ended = false;
+    let text = text.trim_start_matches('\u{feff}');
     for (number, line) in text.lines().enumerate() {
         last_line = number;
         let line = Columns(line.as_bytes());

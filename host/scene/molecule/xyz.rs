@@ -8,6 +8,7 @@ use glam::Vec3;
 
 use super::elements::{self, Element};
 use super::{Atom, WrongLine};
+use crate::scene::MAX_LENGTH;
 
 /// Reads the atoms of the first frame of an XYZ file.
 ///
@@ -63,7 +64,7 @@ pub fn parse(text: &str) -> Result<Vec<Atom>, WrongLine> {
                 WrongLine::new(
                     number,
                     "an atom needs an element and three coordinates",
-                    "a coordinate is missing or no number",
+                    "a coordinate is missing, no number, or too large",
                     "write lines like: C 0.0 1.2 -3.4",
                 )
             })?;
@@ -106,10 +107,13 @@ fn missing(line: usize, expected: usize, found: usize) -> WrongLine {
     )
 }
 
-/// A finite number; Fortran's `1.0D+00` counts as one.
+/// A number that is not too large for a scene; Fortran's `1.0D+00` counts as one.
 fn number_of(text: &str) -> Option<f32> {
     let plain = text.replace(['D', 'd'], "e");
-    plain.parse().ok().filter(|value: &f32| value.is_finite())
+    plain
+        .parse()
+        .ok()
+        .filter(|value: &f32| value.abs() <= MAX_LENGTH)
 }
 
 /// From `C`, `cl`, `17`, and labels such as `C12` and `Fe2+`.
