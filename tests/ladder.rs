@@ -139,7 +139,7 @@ fn lower_rungs_fail_where_they_are_said_to() {
     assert!(share_over_4(Rung::Robust, Family::Ground).0 > 0.9);
 }
 
-/// The mutation: through naga, which drops NoContraction, the compensated rung must be refused by
+/// The mutation: through naga, which drops `NoContraction`, the compensated rung must be refused by
 /// the canary wherever the driver makes use of that freedom, and its answers are then wrong.
 #[test]
 fn without_no_contraction_the_canary_objects() {

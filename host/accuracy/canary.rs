@@ -282,7 +282,7 @@ fn operands() -> Vec<Operands> {
             },
             _ => {
                 // Exponents at most 27 apart, so that f64 holds the sum exactly.
-                let sign = if random.next_u32() % 2 == 0 {
+                let sign = if random.next_u32().is_multiple_of(2) {
                     1.0
                 } else {
                     -1.0

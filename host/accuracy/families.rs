@@ -60,7 +60,7 @@ impl Family {
             Self::Generic => {
                 let sphere = Sphere::new(random.vec3(-10.0, 10.0), random.log_within(0.1, 2.0));
                 let origin = random.vec3(-10.0, 10.0);
-                let aimed = random.next_u32() % 2 == 0;
+                let aimed = random.next_u32().is_multiple_of(2);
                 let direction = if aimed {
                     sphere.center() + random.unit_vec3() * sphere.radius() - origin
                 } else {
@@ -90,7 +90,7 @@ impl Family {
                 let normal = random.unit_vec3();
                 let along = normal.cross(random.unit_vec3());
                 let off = 2.0_f64.powf(-f64::from(random.within(4.0, 30.0)));
-                let sign = if random.next_u32() % 2 == 0 {
+                let sign = if random.next_u32().is_multiple_of(2) {
                     1.0
                 } else {
                     -1.0

@@ -3,17 +3,25 @@
 //! | module | holds |
 //! | --- | --- |
 //! | [`oracle`] | exact arithmetic that decides hit or miss and rounds t correctly |
+//! | [`cases`] | the hard cases, by number and name |
 //! | [`canary`] | what a device does to the arithmetic that the upper rungs need |
 //! | [`families`] | families of rays, each hard in its own way |
 //! | [`screen`] | 64-bit arithmetic with an error bound, to spare the oracle most of its work |
 //! | [`measure`] | how far a rung's answers are from the truth |
+//! | [`choose`] | which rung a scene calls for |
+//! | [`price`] | what a rung costs in time |
+//! | [`report`] | accuracy against time, as a page |
 //! | [`random`] | repeatable random numbers |
 //! | [`ulp`] | distances between floats in units in the last place |
 
 pub mod canary;
+pub mod cases;
+pub mod choose;
 pub mod families;
 pub mod measure;
 pub mod oracle;
+pub mod price;
 pub mod random;
+pub mod report;
 pub mod screen;
 pub mod ulp;

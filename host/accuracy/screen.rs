@@ -25,10 +25,6 @@ pub fn nearest(ray: &Ray, sphere: &Sphere) -> Option<f32> {
 }
 
 /// What the screen knows: a hit, a miss, or (the outer `None`) nothing.
-#[expect(
-    clippy::option_option,
-    reason = "not knowing and knowing of a miss are two things"
-)]
 #[must_use]
 pub fn screen(ray: &Ray, sphere: &Sphere) -> Option<Option<f32>> {
     let o = ray.origin.as_dvec3() - sphere.center().as_dvec3();

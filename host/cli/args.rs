@@ -6,6 +6,8 @@ use std::str::FromStr;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use spherule_kernel::{Rung, Shading};
 
+use crate::accuracy::choose::DEFAULT_TOLERANCE;
+use crate::accuracy::families::Family;
 use crate::device::DeviceChoice;
 use crate::film::file::Format;
 use crate::scene::MAX_IMAGE_SIDE;
@@ -25,6 +27,10 @@ pub(super) enum Command {
     Render(RenderArguments),
     /// List the devices that can render
     Devices(DevicesArguments),
+    /// Try this device's arithmetic, and the hard cases on every rung of precision
+    Check(CheckArguments),
+    /// Measure what each rung of precision gets right, and what it costs in time
+    Accuracy(AccuracyArguments),
 }
 
 #[derive(Debug, Args)]
@@ -53,8 +59,12 @@ pub(super) struct RenderArguments {
     pub(super) shade: Shade,
 
     /// How a ray is intersected with a sphere; the dearer ways are right more often
-    #[arg(long, value_enum, default_value = "robust")]
+    #[arg(long, value_enum, default_value = "auto")]
     pub(super) precision: Precision,
+
+    /// What auto precision may be off by, in pixels
+    #[arg(long, value_name = "PX", default_value_t = DEFAULT_TOLERANCE, value_parser = tolerance)]
+    pub(super) tolerance: f64,
 
     /// Render on the GPU and on the CPU and compare: fail if more than 0.1 % of the pixels differ by more than 2/255
     #[arg(long)]
@@ -74,6 +84,51 @@ pub(super) struct DevicesArguments {
     /// Print JSON
     #[arg(long)]
     pub(super) json: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Exit codes: 0 every promise holds, 1 one is broken or the device failed.")]
+pub(super) struct CheckArguments {
+    /// What to check: auto (a real GPU, else the CPU), gpu, cpu, or a part of an adapter's name
+    #[arg(long, value_name = "auto|gpu|cpu|NAME", default_value = "auto")]
+    pub(super) device: DeviceChoice,
+
+    /// Print JSON
+    #[arg(long)]
+    pub(super) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct AccuracyArguments {
+    /// What to measure: auto (a real GPU, else the CPU), gpu, cpu, or a part of an adapter's name
+    #[arg(long, value_name = "auto|gpu|cpu|NAME", default_value = "auto")]
+    pub(super) device: DeviceChoice,
+
+    /// Rays in each family
+    #[arg(long, value_name = "N", default_value_t = 200_000, value_parser = clap::value_parser!(u32).range(1000..=100_000_000))]
+    pub(super) rays: u32,
+
+    /// Measure this family only: generic, far, ground, tangent, surface or inside
+    #[arg(long, value_name = "FAMILY", value_parser = family)]
+    pub(super) scene: Option<Family>,
+
+    /// Write a report to look at: one HTML page with its plots in it
+    #[arg(short, long, value_name = "REPORT.html")]
+    pub(super) output: Option<PathBuf>,
+
+    /// Write the numbers as JSON; - writes to stdout
+    #[arg(long, value_name = "FILE.json")]
+    pub(super) json: Option<PathBuf>,
+}
+
+fn family(text: &str) -> Result<Family, String> {
+    Family::ALL
+        .into_iter()
+        .find(|family| family.name() == text)
+        .ok_or_else(|| {
+            let names: Vec<&str> = Family::ALL.iter().map(|family| family.name()).collect();
+            format!("give one of {}", names.join(", "))
+        })
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -101,6 +156,8 @@ impl From<Shade> for Shading {
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub(super) enum Precision {
+    /// The cheapest whose bound keeps this scene within the tolerance
+    Auto,
     /// The quadratic formula in 32-bit floats
     Textbook,
     /// 32-bit floats, arranged so that small distant spheres keep their digits
@@ -113,16 +170,25 @@ pub(super) enum Precision {
     Certified,
 }
 
-impl From<Precision> for Rung {
-    fn from(precision: Precision) -> Self {
-        match precision {
-            Precision::Textbook => Self::Textbook,
-            Precision::Robust => Self::Robust,
-            Precision::Compensated => Self::Compensated,
-            Precision::Double => Self::Double,
-            Precision::Certified => Self::Certified,
+impl Precision {
+    /// The rung that was asked for by name.
+    pub(super) fn rung(self) -> Option<Rung> {
+        match self {
+            Self::Auto => None,
+            Self::Textbook => Some(Rung::Textbook),
+            Self::Robust => Some(Rung::Robust),
+            Self::Compensated => Some(Rung::Compensated),
+            Self::Double => Some(Rung::Double),
+            Self::Certified => Some(Rung::Certified),
         }
     }
+}
+
+fn tolerance(text: &str) -> Result<f64, String> {
+    text.parse()
+        .ok()
+        .filter(|pixels: &f64| *pixels > 0.0 && pixels.is_finite())
+        .ok_or_else(|| "give a number of pixels above zero, for example 0.1".into())
 }
 
 /// An image's size, written `1280x720`.

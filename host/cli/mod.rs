@@ -2,7 +2,9 @@
 //!
 //! Exit codes: 0 done, 1 the machine could not do it (or a check failed), 2 the input is wrong.
 
+mod accuracy;
 mod args;
+mod check;
 mod devices;
 mod progress;
 mod render;
@@ -28,6 +30,8 @@ pub fn main() -> ExitCode {
     let done = match Arguments::parse().command {
         Command::Render(arguments) => render::run(&arguments),
         Command::Devices(arguments) => devices::run(&arguments),
+        Command::Check(arguments) => check::run(&arguments),
+        Command::Accuracy(arguments) => accuracy::run(&arguments),
     };
     match done {
         Ok(code) => code,

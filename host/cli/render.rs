@@ -5,10 +5,12 @@ use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
 use serde::Serialize;
+use spherule_kernel::Rung;
 
 use super::args::RenderArguments;
 use super::progress::Bar;
 use super::{note, print};
+use crate::accuracy::choose::choose;
 use crate::device::{Device, DeviceChoice};
 use crate::error::{Error, Result, SceneError};
 use crate::film::Image;
@@ -21,6 +23,7 @@ use crate::scene::Scene;
 struct Stats {
     device: String,
     backend: &'static str,
+    precision: &'static str,
     spheres: usize,
     width: u32,
     height: u32,
@@ -83,12 +86,18 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<ExitCode> {
         (Device::Gpu(_), true) => Some(Device::Cpu),
     };
     say(&format!("rendering on {} ({why})", device.name()));
+    let (rung, why) = choose_rung(arguments, &scene, &device);
+    say(&format!("precision {} ({why})", rung.name()));
+    let settings = Settings {
+        shading: arguments.shade.into(),
+        rung,
+    };
 
-    let rendered = match with_bar(arguments, &scene, &device) {
+    let rendered = match with_bar(arguments, &scene, settings, &device) {
         Err(error @ Error::RungRefused { .. }) if arguments.device == DeviceChoice::Auto => {
             device = Device::Cpu;
             say(&format!("{error}\nrendering on {} instead", device.name()));
-            with_bar(arguments, &scene, &device)?
+            with_bar(arguments, &scene, settings, &device)?
         }
         done => done?,
     };
@@ -118,7 +127,7 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<ExitCode> {
     ));
 
     let check = other
-        .map(|other| check(arguments, &scene, &other, &rendered))
+        .map(|other| check(arguments, &scene, settings, &other, &rendered))
         .transpose()?;
     let passed = check.as_ref().is_none_or(|check| check.passed);
     if let Some(path) = &arguments.stats {
@@ -129,6 +138,7 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<ExitCode> {
             &Stats {
                 device: device.name(),
                 backend: device.backend(),
+                precision: rung.name(),
                 spheres: scene.world.spheres.len(),
                 width: scene.width,
                 height: scene.height,
@@ -154,12 +164,29 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<ExitCode> {
     })
 }
 
-fn with_bar(arguments: &RenderArguments, scene: &Scene, device: &Device) -> Result<Rendered> {
+/// The rung that was asked for, or else the one that the scene calls for; and why.
+fn choose_rung(arguments: &RenderArguments, scene: &Scene, device: &Device) -> (Rung, String) {
+    if let Some(rung) = arguments.precision.rung() {
+        return (rung, "asked for".into());
+    }
+    let choice = choose(scene, arguments.tolerance, matches!(device, Device::Cpu));
+    let mut why = format!(
+        "within {:.1e} pixels, {} are allowed",
+        choice.bound, arguments.tolerance
+    );
+    if let Some((rung, bound)) = choice.cheaper {
+        why += &format!("; {} might be off by {bound:.1e}", rung.name());
+    }
+    (choice.rung, why)
+}
+
+fn with_bar(
+    arguments: &RenderArguments,
+    scene: &Scene,
+    settings: Settings,
+    device: &Device,
+) -> Result<Rendered> {
     let bar = Bar::new(arguments.quiet);
-    let settings = Settings {
-        shading: arguments.shade.into(),
-        rung: arguments.precision.into(),
-    };
     render(scene, settings, device, &|done| bar.set(done))
 }
 
@@ -181,10 +208,11 @@ fn refuse_same_file(stats: &Path, others: &[&Path]) -> Result<()> {
 fn check(
     arguments: &RenderArguments,
     scene: &Scene,
+    settings: Settings,
     other: &Device,
     rendered: &Rendered,
 ) -> Result<Check> {
-    let again = with_bar(arguments, scene, other)?;
+    let again = with_bar(arguments, scene, settings, other)?;
     let comparison = Comparison::of(&rendered.image, &again.image, Tolerance::default())
         .ok_or_else(|| Error::Image {
             path: PathBuf::new(),

@@ -15,6 +15,8 @@ pub struct Surface {
     pub point: Vec3,
     /// The outward unit normal.
     pub normal: Vec3,
+    /// How far, at most, the point is from the sphere, in scene units.
+    pub error: f32,
 }
 
 impl Surface {
@@ -22,11 +24,39 @@ impl Surface {
     #[inline]
     #[must_use]
     pub fn at(ray: &Ray, t: f32, sphere: Sphere) -> Self {
-        let point = ray.at(t);
-        // Normalised rather than divided by the radius: the point is on the sphere only up to
-        // rounding, and a normal must have length one all the same.
-        let normal = unit(point - sphere.center());
-        Self { point, normal }
+        let center = sphere.center();
+        let radius = sphere.radius();
+        // Relative to the centre from the start: the digits that a large |C| would take from the
+        // point are still there for the normal.
+        let normal = unit((ray.origin - center) + ray.direction * t);
+        // Projected back onto the sphere: what is left of the error does not depend on t. The
+        // normal's length is off by 3u, its product with r and the sum by u each, which makes
+        // 5u r + u|C| along an axis; √3 axes and a factor of two to spare.
+        let point = center + normal * radius;
+        let size = center.abs().max_element() + radius.abs();
+        Self {
+            point,
+            normal,
+            error: size * (18.0 / (1 << 24) as f32),
+        }
+    }
+
+    /// A ray that leaves the surface along `direction`, on the side of the sphere that the
+    /// direction points to, and from outside of the band in which rounding decides what is inside:
+    /// it does not hit again what it leaves, however small or large that is.
+    #[inline]
+    #[must_use]
+    pub fn leave(&self, direction: Vec3) -> Ray {
+        let outward = if self.normal.dot(direction) >= 0.0 {
+            1.0
+        } else {
+            -1.0
+        };
+        // Twice, because the sum rounds once more.
+        Ray::new(
+            self.point + self.normal * (2.0 * self.error * outward),
+            direction,
+        )
     }
 }
 

@@ -1,0 +1,154 @@
+//! Which rung a scene calls for: the cheapest whose bound keeps the image within a tolerance.
+//!
+//! An error of t does not move a point across the image of a primary ray, but it moves the curve
+//! in which two surfaces meet, and the point that a secondary ray starts from. An error of δt at
+//! distance t is seen, at worst, as a shift of δt/t over the angle of a pixel. For a camera at o
+//! from the centre of a sphere of radius r, and a direction of unit length, the roots have the
+//! product c, so that |q| ≥ √|c|, and t ≥ |c| / (|o| + r). With the unit roundoff u of the rung:
+//!
+//! - `robust`: δt ≤ 8u (o·o + r²) / √|c|, from the cancellation of c; the silhouette shifts by the
+//!   error of the foot, 10u|o|, and by that of o = O − C, u·max(|O|, |C|), seen at distance |o|.
+//! - `textbook`: the same, and its discriminant is off by 16u o·o, which shifts the silhouette by
+//!   8u o·o / r.
+//! - `double`: as `robust`, with u = 2⁻⁵³ and an exact o.
+//! - `certified`: half a unit in the last place of t.
+
+use glam::DVec3;
+use spherule_kernel::{Rung, Sphere};
+
+use crate::scene::Scene;
+
+/// The tolerance when nothing is said, in pixels.
+pub const DEFAULT_TOLERANCE: f64 = 0.1;
+
+/// A rung, and why it was chosen.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Choice {
+    /// The rung.
+    pub rung: Rung,
+    /// The bound of the rung on this scene, in pixels.
+    pub bound: f64,
+    /// The next cheaper rung and its bound, where there is one: why it was not enough.
+    pub cheaper: Option<(Rung, f64)>,
+}
+
+/// The rungs in order of their price on every device that was measured: `double` and `compensated`
+/// are never both cheaper and better than `certified`, except on a CPU, where `double` is.
+fn order(on_cpu: bool) -> &'static [Rung] {
+    if on_cpu {
+        &[Rung::Textbook, Rung::Robust, Rung::Double, Rung::Certified]
+    } else {
+        &[Rung::Textbook, Rung::Robust, Rung::Certified]
+    }
+}
+
+/// The cheapest rung whose bound is within `tolerance` pixels, for the scene as it is seen.
+#[must_use]
+pub fn choose(scene: &Scene, tolerance: f64, on_cpu: bool) -> Choice {
+    let view = scene.view_or_framed();
+    let eye = view.eye.as_dvec3();
+    let pixel = 2.0 * (0.5 * view.vertical_fov.to_radians()).tan() / f64::from(scene.height);
+    let bound = |rung| {
+        scene
+            .world
+            .spheres
+            .iter()
+            .map(|sphere| shift(rung, eye, sphere) / pixel)
+            .fold(0.0, f64::max)
+    };
+    let mut cheaper = None;
+    for rung in order(on_cpu) {
+        let bound = bound(*rung);
+        if bound <= tolerance || *rung == Rung::Certified {
+            return Choice {
+                rung: *rung,
+                bound,
+                cheaper,
+            };
+        }
+        cheaper = Some((*rung, bound));
+    }
+    Choice {
+        rung: Rung::Certified,
+        bound: bound(Rung::Certified),
+        cheaper,
+    }
+}
+
+/// The largest shift, as an angle, that the rung's error can cause on this sphere.
+fn shift(rung: Rung, eye: DVec3, sphere: &Sphere) -> f64 {
+    let single = f64::from(f32::EPSILON) / 2.0;
+    let (center, r) = (sphere.center().as_dvec3(), f64::from(sphere.radius()));
+    let o = (eye - center).length();
+    let (oo, rr) = (o * o, r * r);
+    let c = (oo - rr).abs();
+    let of_t = |u: f64| 8.0 * u * (oo + rr) * (o + r) / c.powf(1.5);
+    let of_foot = |u: f64| 10.0 * u;
+    let of_difference = single * eye.abs().max(center.abs()).max_element() / o;
+    match rung {
+        Rung::Textbook => of_t(single) + of_foot(single) + of_difference + 8.0 * single * o / r,
+        Rung::Robust => of_t(single) + of_foot(single) + of_difference,
+        Rung::Double => of_t(f64::EPSILON / 2.0) + single,
+        Rung::Compensated => of_t(single * single) + single,
+        Rung::Certified => single,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{View, World};
+    use glam::Vec3;
+    use spherule_kernel::Material;
+
+    fn scene(sphere: Sphere, eye: Vec3) -> Scene {
+        let mut world = World::default();
+        let grey = world.add_material(Material::diffuse(Vec3::splat(0.5)));
+        world.add(sphere, grey);
+        let mut scene = Scene::new(world);
+        scene.view = Some(View {
+            eye,
+            target: eye + Vec3::NEG_Z,
+            up: Vec3::Y,
+            vertical_fov: 40.0,
+        });
+        scene
+    }
+
+    #[test]
+    fn a_molecule_gets_a_cheap_rung_and_the_earth_does_not() {
+        let crambin = Scene::load("scenes/1crn.pdb").expect("crambin");
+        for on_cpu in [true, false] {
+            let choice = choose(&crambin, DEFAULT_TOLERANCE, on_cpu);
+            assert!(choice.rung <= Rung::Robust, "{choice:?}");
+            assert!(choice.bound <= DEFAULT_TOLERANCE);
+        }
+        let earth = scene(
+            Sphere::new(Vec3::new(0.0, -6.4e6, 0.0), 6.4e6),
+            Vec3::Y * 1.7,
+        );
+        assert_eq!(choose(&earth, DEFAULT_TOLERANCE, true).rung, Rung::Double);
+        assert_eq!(
+            choose(&earth, DEFAULT_TOLERANCE, false).rung,
+            Rung::Certified
+        );
+    }
+
+    #[test]
+    fn a_far_small_sphere_needs_more_than_the_textbook() {
+        let marble = scene(Sphere::new(Vec3::new(0.0, 0.0, -1e4), 0.5), Vec3::ZERO);
+        let choice = choose(&marble, DEFAULT_TOLERANCE, false);
+        assert_eq!(choice.rung, Rung::Robust);
+        assert_eq!(choice.cheaper.map(|(rung, _)| rung), Some(Rung::Textbook));
+    }
+
+    #[test]
+    fn a_camera_on_a_surface_ends_at_certified() {
+        let touching = scene(Sphere::new(Vec3::NEG_Y, 1.0), Vec3::ZERO);
+        assert_eq!(
+            choose(&touching, DEFAULT_TOLERANCE, true).rung,
+            Rung::Certified
+        );
+        assert_eq!(choose(&touching, 1e9, false).rung, Rung::Certified);
+    }
+}

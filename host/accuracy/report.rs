@@ -1,0 +1,315 @@
+//! The report: accuracy against time as one HTML page that needs nothing else, with its plots as
+//! SVG, for the screen and for print.
+
+use std::fmt::Write;
+
+use super::measure::Measured;
+use super::price::Price;
+
+/// What the page says of one rung on one family.
+#[derive(Clone, Copy, Debug)]
+pub struct Row<'a> {
+    /// The rung's name.
+    pub rung: &'a str,
+    /// What an intersection costs.
+    pub price: Price,
+    /// How right it is.
+    pub measured: &'a Measured,
+}
+
+/// What the page says of one family.
+#[derive(Clone, Debug)]
+pub struct Family<'a> {
+    /// Its name.
+    pub name: &'a str,
+    /// A sentence below its plot.
+    pub note: String,
+    /// The rungs.
+    pub rungs: Vec<Row<'a>>,
+}
+
+/// Colours that stay apart for colour-blind readers and in grey (Okabe and Ito, 2008).
+const COLORS: [&str; 5] = ["#d55e00", "#0072b2", "#cc79a7", "#009e73", "#000000"];
+
+const STYLE: &str = "\
+body{font:15px/1.5 system-ui,sans-serif;color:#222;max-width:1080px;margin:2rem auto;padding:0 1rem}\
+h1{font-size:1.6rem;margin-bottom:.2rem}h2{font-size:1.15rem;margin:2rem 0 .3rem}\
+p{margin:.4rem 0;max-width:75ch}.plots{display:flex;flex-wrap:wrap;gap:1rem}figure{margin:0}\
+figcaption{font-size:.85rem;color:#555}svg{background:#fff}svg text{font:12px system-ui,sans-serif;fill:#333}\
+table{border-collapse:collapse;font-size:.85rem;margin:.6rem 0}th,td{padding:.15rem .7rem;text-align:right}\
+th{border-bottom:1px solid #999;font-weight:600}td:first-child,th:first-child{text-align:left}\
+code{font-size:.85em}pre{font-size:.75rem;overflow-x:auto;background:#f6f6f6;padding:.7rem}\
+@media print{body{margin:0;max-width:none}section{break-inside:avoid}}";
+
+/// The page. `table` is the same as text, for copying.
+#[must_use]
+pub fn page(device: &str, rays: u32, families: &[Family<'_>], table: &str) -> String {
+    let mut html = format!(
+        "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\
+         <meta name=\"viewport\" content=\"width=device-width\">\
+         <title>What accuracy costs in time</title><style>{STYLE}</style></head><body>\n\
+         <h1>What accuracy costs in time</h1>\n\
+         <p>{device}, {rays} rays a family, every answer judged by exact arithmetic. Left: the worst error of the \
+         distance t against the time of one ray-sphere test; lower and further left is better, and the line joins the \
+         rungs that no other beats in both. Beside a name stand the rays put on the wrong side of a silhouette. Right: \
+         how the errors of the hits are spread.</p>\n",
+        device = escape(device),
+    );
+    for family in families {
+        // Writing to a String cannot fail.
+        let _ = writeln!(
+            html,
+            "<section><h2>{}</h2><div class=\"plots\"><figure>{}<figcaption>worst error against time</figcaption></figure>\
+             <figure>{}<figcaption>share of the hits by error</figcaption></figure></div>{}<p>{}</p></section>",
+            escape(family.name),
+            scatter(&family.rungs),
+            histograms(&family.rungs),
+            worst_inputs(&family.rungs),
+            escape(&family.note),
+        );
+    }
+    let _ = write!(
+        html,
+        "<h2>The numbers</h2><pre>{}</pre>\n</body></html>\n",
+        escape(table)
+    );
+    html
+}
+
+const WIDTH: f64 = 500.0;
+const HEIGHT: f64 = 300.0;
+const LEFT: f64 = 62.0;
+const RIGHT: f64 = 96.0;
+const TOP: f64 = 14.0;
+const BOTTOM: f64 = 44.0;
+
+/// The error on the vertical axis: log₂(1 + ulp), from 0 to 32.
+fn height_of(ulp: f64) -> f64 {
+    HEIGHT - BOTTOM - (1.0 + ulp).log2() / 32.0 * (HEIGHT - TOP - BOTTOM)
+}
+
+fn scatter(rungs: &[Row<'_>]) -> String {
+    let low = rungs
+        .iter()
+        .map(|row| row.price.fastest)
+        .fold(f64::MAX, f64::min);
+    let high = rungs
+        .iter()
+        .map(|row| row.price.slowest)
+        .fold(0.0, f64::max);
+    let (low, high) = ((0.8 * low).max(1e-6).ln(), (1.25 * high).max(1e-5).ln());
+    let x = |time: f64| LEFT + (time.max(1e-9).ln() - low) / (high - low) * (WIDTH - LEFT - RIGHT);
+    let mut svg = open_svg("worst error in ulp against nanoseconds a test");
+    for (label, ulp) in [
+        ("0", 0.0),
+        ("1", 1.0),
+        ("2⁸", 255.0),
+        ("2¹⁶", 65_535.0),
+        ("2²⁴", 16_777_215.0),
+        ("2³²", 4_294_967_295.0),
+    ] {
+        axis_line(&mut svg, label, height_of(ulp));
+    }
+    let mut decade = 10.0_f64.powf((low / 10.0_f64.ln()).floor());
+    while decade.ln() < high {
+        for step in [1.0, 2.0, 5.0] {
+            let time = decade * step;
+            if time.ln() > low && time.ln() < high {
+                let at = x(time);
+                let _ = write!(
+                    svg,
+                    "<line x1=\"{at:.1}\" x2=\"{at:.1}\" y1=\"{TOP}\" y2=\"{:.1}\" stroke=\"#eee\"/>\
+                     <text x=\"{at:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{}</text>",
+                    HEIGHT - BOTTOM,
+                    HEIGHT - BOTTOM + 16.0,
+                    short(time),
+                );
+            }
+        }
+        decade *= 10.0;
+    }
+    let _ = write!(
+        svg,
+        "<text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"middle\">nanoseconds a test</text>\
+         <text x=\"14\" y=\"{:.1}\" text-anchor=\"middle\" transform=\"rotate(-90 14 {0:.1})\">worst error of t, ulp</text>",
+        0.5 * (LEFT + WIDTH - RIGHT),
+        HEIGHT - 8.0,
+        0.5 * (TOP + HEIGHT - BOTTOM),
+    );
+
+    let points: Vec<(f64, f64)> = rungs
+        .iter()
+        .map(|row| {
+            (
+                x(row.price.nanoseconds),
+                height_of(f64::from(row.measured.max_ulp_anywhere)),
+            )
+        })
+        .collect();
+    // The Pareto line, from the cheapest rung to the most accurate.
+    let mut order: Vec<usize> = (0..rungs.len()).collect();
+    order.sort_by(|a, b| points[*a].0.total_cmp(&points[*b].0));
+    let mut best = f64::MIN;
+    let mut path = String::new();
+    for index in order {
+        let (x, y) = points[index];
+        if y > best {
+            best = y;
+            let _ = write!(
+                path,
+                "{}{x:.1} {y:.1}",
+                if path.is_empty() { "M" } else { " L" }
+            );
+        }
+    }
+    let _ = write!(
+        svg,
+        "<path d=\"{path}\" fill=\"none\" stroke=\"#999\" stroke-dasharray=\"4 3\"/>"
+    );
+    // Labels that would lie on each other move apart.
+    let mut labels: Vec<(f64, usize)> = points.iter().map(|p| p.1).zip(0..).collect();
+    labels.sort_by(|a, b| a.0.total_cmp(&b.0));
+    for index in 1..labels.len() {
+        labels[index].0 = labels[index].0.max(labels[index - 1].0 + 14.0);
+    }
+    let overshoot = labels
+        .last()
+        .map_or(0.0, |last| (last.0 - (HEIGHT - BOTTOM)).max(0.0));
+    for (label_y, index) in labels {
+        let (row, (x0, y0)) = (&rungs[index], points[index]);
+        let wrong = row.measured.false_hits + row.measured.false_misses;
+        let _ = write!(
+            svg,
+            "<line x1=\"{:.1}\" x2=\"{:.1}\" y1=\"{y0:.1}\" y2=\"{y0:.1}\" stroke=\"{color}\"/>\
+             <circle cx=\"{x0:.1}\" cy=\"{y0:.1}\" r=\"4.5\" fill=\"{color}\"/>\
+             <text x=\"{:.1}\" y=\"{:.1}\" style=\"fill:{color}\">{}{}</text>",
+            x(row.price.fastest),
+            x(row.price.slowest),
+            x0 + 8.0,
+            label_y - overshoot + 4.0,
+            escape(row.rung),
+            if wrong > 0 {
+                format!(" ({wrong})")
+            } else {
+                String::new()
+            },
+            color = COLORS[index % COLORS.len()],
+        );
+    }
+    svg + "</svg>"
+}
+
+fn histograms(rungs: &[Row<'_>]) -> String {
+    let mut svg = open_svg("share of the hits by error in ulp");
+    let plot = WIDTH - LEFT - RIGHT;
+    // The share on the vertical axis, logarithmic from a millionth to one.
+    let y = |share: f64| {
+        HEIGHT - BOTTOM - (1.0 + share.max(1e-6).log10() / 6.0) * (HEIGHT - TOP - BOTTOM)
+    };
+    for (label, share) in [
+        ("100 %", 1.0),
+        ("1 %", 1e-2),
+        ("0.01 %", 1e-4),
+        ("10⁻⁶", 1e-6),
+    ] {
+        axis_line(&mut svg, label, y(share));
+    }
+    let x = |bucket: usize| LEFT + bucket as f64 / 33.0 * plot;
+    for (label, bucket) in [("0", 0), ("1", 1), ("2⁸", 9), ("2¹⁶", 17), ("2²⁴", 25)] {
+        let _ = write!(
+            svg,
+            "<text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{label}</text>",
+            x(bucket),
+            HEIGHT - BOTTOM + 16.0
+        );
+    }
+    let _ = write!(
+        svg,
+        "<text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"middle\">error of t, ulp</text>",
+        LEFT + 0.5 * plot,
+        HEIGHT - 8.0
+    );
+    for (index, row) in rungs.iter().enumerate() {
+        let total = row.measured.histogram.iter().sum::<usize>().max(1) as f64;
+        let mut path = String::new();
+        for (bucket, count) in row.measured.histogram.iter().enumerate() {
+            let share = *count as f64 / total;
+            let _ = write!(
+                path,
+                "{}{:.1} {:.1}",
+                if bucket == 0 { "M" } else { " L" },
+                x(bucket.min(33)),
+                y(share)
+            );
+        }
+        let color = COLORS[index % COLORS.len()];
+        let _ = write!(
+            svg,
+            "<path d=\"{path}\" fill=\"none\" stroke=\"{color}\" stroke-width=\"1.6\"/>\
+             <text x=\"{:.1}\" y=\"{:.1}\" style=\"fill:{color}\">{}</text>",
+            WIDTH - RIGHT + 8.0,
+            TOP + 16.0 * (index + 1) as f64,
+            escape(row.rung),
+        );
+    }
+    svg + "</svg>"
+}
+
+/// The inputs of the largest errors, as the bits of their floats.
+fn worst_inputs(rungs: &[Row<'_>]) -> String {
+    let mut html = String::from(
+        "<table><tr><th>rung</th><th>worst ulp</th><th>said</th><th>true</th><th>origin</th><th>direction</th><th>centre, radius</th></tr>",
+    );
+    for row in rungs {
+        let Some(worst) = &row.measured.worst else {
+            continue;
+        };
+        let bits = |words: &[u32]| {
+            let words: Vec<String> = words.iter().map(|word| format!("{word:08x}")).collect();
+            words.join(" ")
+        };
+        let _ = write!(
+            html,
+            "<tr><td>{}</td><td>{}</td><td>{:e}</td><td>{:e}</td><td><code>{}</code></td><td><code>{}</code></td><td><code>{}</code></td></tr>",
+            escape(row.rung),
+            row.measured.max_ulp_anywhere,
+            worst.found,
+            worst.truth,
+            bits(&worst.ray[..3]),
+            bits(&worst.ray[3..]),
+            bits(&worst.sphere),
+        );
+    }
+    html + "</table>"
+}
+
+fn open_svg(title: &str) -> String {
+    format!(
+        "<svg width=\"{WIDTH}\" height=\"{HEIGHT}\" viewBox=\"0 0 {WIDTH} {HEIGHT}\" role=\"img\"><title>{title}</title>"
+    )
+}
+
+fn axis_line(svg: &mut String, label: &str, y: f64) {
+    let _ = write!(
+        svg,
+        "<line x1=\"{LEFT}\" x2=\"{:.1}\" y1=\"{y:.1}\" y2=\"{y:.1}\" stroke=\"#ddd\"/>\
+         <text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\">{label}</text>",
+        WIDTH - RIGHT,
+        LEFT - 6.0,
+        y + 4.0,
+    );
+}
+
+fn short(time: f64) -> String {
+    if time >= 1.0 {
+        format!("{time:.0}")
+    } else {
+        format!("{time}").trim_end_matches('0').to_owned()
+    }
+}
+
+fn escape(text: &str) -> String {
+    text.replace('&', "&amp;")
+        .replace('<', "&lt;")
+        .replace('>', "&gt;")
+}

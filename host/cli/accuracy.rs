@@ -1,0 +1,190 @@
+//! `spherule accuracy`: what each rung gets right on each family of rays, and what it costs.
+
+use std::fmt::Write;
+use std::path::Path;
+use std::process::ExitCode;
+
+use serde::Serialize;
+use spherule_kernel::Rung;
+
+use super::args::AccuracyArguments;
+use super::{note, print};
+use crate::accuracy::canary::Canary;
+use crate::accuracy::families::Family;
+use crate::accuracy::measure::{Escalation, Measured, intersect_all, judge};
+use crate::accuracy::price::{self, Price};
+use crate::accuracy::report;
+use crate::device::Device;
+use crate::error::{Error, Result};
+
+/// Everything that was measured; the JSON output is this.
+#[derive(Debug, Serialize)]
+pub(super) struct Report {
+    device: String,
+    rays_a_family: u32,
+    seed: u64,
+    refused: Vec<(&'static str, String)>,
+    families: Vec<FamilyReport>,
+}
+
+#[derive(Debug, Serialize)]
+struct FamilyReport {
+    family: &'static str,
+    /// Of the certified rung: how many of the rays each stage decided.
+    escalation: Escalation,
+    rungs: Vec<RungReport>,
+}
+
+#[derive(Debug, Serialize)]
+struct RungReport {
+    rung: &'static str,
+    price: Price,
+    measured: Measured,
+}
+
+const SEED: u64 = 2026;
+
+pub(super) fn run(arguments: &AccuracyArguments) -> Result<ExitCode> {
+    let (device, why) = Device::open(&arguments.device)?;
+    note(&format!("measuring {} ({why})", device.name()));
+    let canary = Canary::on(&device)?;
+    let mut refused = Vec::new();
+    let mut rungs = Vec::new();
+    for rung in Rung::ALL {
+        match canary.objection(rung) {
+            None => rungs.push(rung),
+            Some(why) => refused.push((rung.name(), why)),
+        }
+    }
+    let mut families = Vec::new();
+    for family in Family::ALL {
+        if arguments.scene.is_some_and(|only| only != family) {
+            continue;
+        }
+        let samples = family.sample(SEED, arguments.rays as usize);
+        let prices = price::measure(&device, &rungs, &samples)?;
+        let mut reports = Vec::new();
+        for (rung, price) in rungs.iter().zip(prices) {
+            let answers = intersect_all(&device, *rung, &samples)?;
+            reports.push(RungReport {
+                rung: rung.name(),
+                price,
+                measured: judge(&samples, &answers),
+            });
+        }
+        families.push(FamilyReport {
+            family: family.name(),
+            escalation: Escalation::of(&samples),
+            rungs: reports,
+        });
+    }
+    let report = Report {
+        device: device.name(),
+        rays_a_family: arguments.rays,
+        seed: SEED,
+        refused,
+        families,
+    };
+    if let Some(path) = &arguments.json {
+        let text = serde_json::to_string_pretty(&report).unwrap_or_default() + "\n";
+        if path == Path::new("-") {
+            return print(&text).map(|()| ExitCode::SUCCESS);
+        }
+        write(path, &text)?;
+    }
+    if let Some(path) = &arguments.output {
+        write(path, &page(&report))?;
+        note(&format!("wrote {}", path.display()));
+    }
+    print(&table(&report))?;
+    Ok(ExitCode::SUCCESS)
+}
+
+fn write(path: &Path, text: &str) -> Result<()> {
+    std::fs::write(path, text).map_err(|error| Error::Image {
+        path: path.into(),
+        reason: format!("cannot be written: {error}"),
+        help: "check that the directory exists and may be written".into(),
+    })
+}
+
+fn table(report: &Report) -> String {
+    let mut text = format!(
+        "{}, {} rays a family\n\n{:9} {:12} {:>17} {:>9} {:>12} {:>9} {:>8} {:>8} {:>9}\n",
+        report.device,
+        report.rays_a_family,
+        "family",
+        "rung",
+        "ns a test",
+        "× robust",
+        "max ulp",
+        "p99.99",
+        "false",
+        "missed",
+        "margin",
+    );
+    for family in &report.families {
+        let robust = family
+            .rungs
+            .iter()
+            .find(|rung| rung.rung == Rung::Robust.name())
+            .map_or(f64::NAN, |rung| rung.price.nanoseconds);
+        for (index, rung) in family.rungs.iter().enumerate() {
+            let (price, measured) = (&rung.price, &rung.measured);
+            // Writing to a String cannot fail.
+            let _ = writeln!(
+                text,
+                "{:9} {:12} {:>8.3} ± {:<6.3} {:>9.2} {:>12} {:>9} {:>8} {:>8} {:>9}",
+                if index == 0 { family.family } else { "" },
+                rung.rung,
+                price.nanoseconds,
+                0.5 * (price.slowest - price.fastest),
+                price.nanoseconds / robust,
+                measured.max_ulp_anywhere,
+                measured.ulp_at(0.9999),
+                measured.false_hits,
+                measured.false_misses,
+                if measured.margin > 0.0 {
+                    format!("{:.1e}", measured.margin)
+                } else {
+                    "–".into()
+                },
+            );
+        }
+        let _ = writeln!(text, "{:9} {}\n", "", family.escalation);
+    }
+    for (rung, why) in &report.refused {
+        let _ = writeln!(text, "{rung} is refused here: {why}");
+    }
+    text.push_str(
+        "ulp: error of t in units in the last place, over the hits. false, missed: hits reported that are none, hits\n\
+         not found. margin: the largest |Δ| / (a r²) on the wrong side of a silhouette.\n",
+    );
+    text
+}
+
+fn page(report: &Report) -> String {
+    let families: Vec<report::Family<'_>> = report
+        .families
+        .iter()
+        .map(|family| report::Family {
+            name: family.family,
+            note: family.escalation.to_string(),
+            rungs: family
+                .rungs
+                .iter()
+                .map(|rung| report::Row {
+                    rung: rung.rung,
+                    price: rung.price,
+                    measured: &rung.measured,
+                })
+                .collect(),
+        })
+        .collect();
+    report::page(
+        &report.device,
+        report.rays_a_family,
+        &families,
+        &table(report),
+    )
+}

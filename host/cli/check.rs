@@ -1,0 +1,188 @@
+//! `spherule check`: the canary, then every hard case on every rung.
+
+use std::fmt::Write;
+use std::process::ExitCode;
+
+use serde::Serialize;
+use spherule_kernel::Rung;
+
+use super::args::CheckArguments;
+use super::print;
+use crate::accuracy::canary::{Canary, Share};
+use crate::accuracy::cases::{Verdict, catalogue, world_cases};
+use crate::device::Device;
+use crate::error::Result;
+
+#[derive(Debug, Serialize)]
+struct Report {
+    device: String,
+    why: String,
+    canary: Canary,
+    refused: Vec<(&'static str, String)>,
+    cases: Vec<CaseReport>,
+    worlds: Vec<WorldReport>,
+    promises_kept: bool,
+}
+
+#[derive(Debug, Serialize)]
+struct CaseReport {
+    number: u8,
+    name: &'static str,
+    /// A verdict for each rung that was not refused.
+    rungs: Vec<(&'static str, Verdict)>,
+}
+
+#[derive(Debug, Serialize)]
+struct WorldReport {
+    number: u8,
+    name: &'static str,
+    wrong: Option<String>,
+}
+
+pub(super) fn run(arguments: &CheckArguments) -> Result<ExitCode> {
+    let (device, why) = Device::open(&arguments.device)?;
+    let report = report(&device, why)?;
+    if arguments.json {
+        let text = serde_json::to_string_pretty(&report).unwrap_or_default();
+        print(&format!("{text}\n"))?;
+    } else {
+        print(&table(&report))?;
+    }
+    Ok(if report.promises_kept {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::FAILURE
+    })
+}
+
+fn report(device: &Device, why: String) -> Result<Report> {
+    let canary = Canary::on(device)?;
+    let objections = Rung::ALL.map(|rung| (rung, canary.objection(rung)));
+    let mut cases = Vec::new();
+    let mut promises_kept = true;
+    for case in catalogue() {
+        let mut rungs = Vec::new();
+        for (rung, objection) in &objections {
+            if objection.is_none() {
+                let verdict = case.judge(device, *rung)?;
+                promises_kept &= !verdict.is_broken();
+                rungs.push((rung.name(), verdict));
+            }
+        }
+        cases.push(CaseReport {
+            number: case.number,
+            name: case.name,
+            rungs,
+        });
+    }
+    let worlds: Vec<WorldReport> = world_cases()
+        .into_iter()
+        .map(|(number, name, wrong)| WorldReport {
+            number,
+            name,
+            wrong,
+        })
+        .collect();
+    promises_kept &= worlds.iter().all(|world| world.wrong.is_none());
+    Ok(Report {
+        device: device.name(),
+        why,
+        canary,
+        refused: objections
+            .into_iter()
+            .filter_map(|(rung, objection)| objection.map(|why| (rung.name(), why)))
+            .collect(),
+        cases,
+        worlds,
+        promises_kept,
+    })
+}
+
+fn table(report: &Report) -> String {
+    let mut text = String::new();
+    let share = |share: Share| format!("{:>6} of {}", share.exact, share.tried);
+    let canary = &report.canary;
+    // Writing to a String cannot fail.
+    let _ = writeln!(text, "{} ({})\n", report.device, report.why);
+    let _ = writeln!(text, "What its arithmetic does");
+    let rows = [
+        ("sums with an exact error term", share(canary.sums)),
+        ("products with an exact error term", share(canary.products)),
+        ("splits into exact halves", share(canary.splits)),
+        (
+            "quotients rounded correctly",
+            format!(
+                "{}, worst {} ulp",
+                share(canary.quotients),
+                canary.quotient_ulps
+            ),
+        ),
+        (
+            "square roots rounded correctly",
+            format!("{}, worst {} ulp", share(canary.roots), canary.root_ulps),
+        ),
+        (
+            "64-bit results right",
+            canary.wide.map_or("there are none".into(), share),
+        ),
+        ("finds a NaN by comparing", yes_no(canary.finds_nan).into()),
+        ("keeps subnormals", yes_no(canary.keeps_subnormals).into()),
+    ];
+    for (what, result) in rows {
+        let _ = writeln!(text, "  {what:34} {result}");
+    }
+    for (rung, why) in &report.refused {
+        let _ = writeln!(text, "  {rung} is refused here: {why}");
+    }
+
+    let _ = writeln!(
+        text,
+        "\nThe hard cases: ✓ right, · wrong and not promised, ✗ a broken promise\n"
+    );
+    let _ = write!(text, "{:>4} {:52}", "", "");
+    for rung in Rung::ALL {
+        let _ = write!(text, " {:>11}", rung.name());
+    }
+    text.push('\n');
+    let mut broken = Vec::new();
+    for case in &report.cases {
+        let _ = write!(text, "{:>4} {:52}", case.number, case.name);
+        for rung in Rung::ALL {
+            let found = case.rungs.iter().find(|(name, _)| *name == rung.name());
+            let mark = match found {
+                None => "refused",
+                Some((_, Verdict::Holds)) => "✓",
+                Some((_, Verdict::FailsUnpromised(_))) => "·",
+                Some((_, Verdict::Fails(why))) => {
+                    broken.push(format!(
+                        "{} {} on {}: {why}",
+                        case.number,
+                        case.name,
+                        rung.name()
+                    ));
+                    "✗"
+                }
+            };
+            let _ = write!(text, " {mark:>11}");
+        }
+        text.push('\n');
+    }
+    for world in &report.worlds {
+        let mark = if world.wrong.is_none() { "✓" } else { "✗" };
+        let _ = writeln!(text, "{:>4} {:52} {mark:>23}", world.number, world.name);
+        if let Some(why) = &world.wrong {
+            broken.push(format!("{} {}: {why}", world.number, world.name));
+        }
+    }
+    text.push('\n');
+    if broken.is_empty() {
+        text.push_str("Every promise holds on this device.\n");
+    } else {
+        let _ = writeln!(text, "Broken promises:\n  {}", broken.join("\n  "));
+    }
+    text
+}
+
+fn yes_no(yes: bool) -> &'static str {
+    if yes { "yes" } else { "no" }
+}

@@ -1,0 +1,73 @@
+//! The hard cases, by number, on every rung, on the CPU and on every adapter: no promise may be
+//! broken, and `certified` promises them all.
+
+mod common;
+
+use common::{all_adapters, open, skips};
+use spherule::Device;
+use spherule::accuracy::cases::{Verdict, catalogue, world_cases};
+use spherule::device::GpuOptions;
+use spherule::kernel::Rung;
+
+fn check(device: &Device) {
+    let mut broken = Vec::new();
+    for case in catalogue() {
+        for rung in Rung::ALL {
+            let verdict = case.judge(device, rung).expect("the device runs");
+            if verdict.is_broken() || rung == Rung::Certified && verdict != Verdict::Holds {
+                broken.push(format!(
+                    "{} {} on {}: {verdict:?}",
+                    case.number,
+                    case.name,
+                    rung.name()
+                ));
+            }
+        }
+    }
+    assert!(
+        broken.is_empty(),
+        "{}:\n{}",
+        device.name(),
+        broken.join("\n")
+    );
+}
+
+#[test]
+fn no_promise_is_broken_on_the_cpu() {
+    check(&Device::Cpu);
+}
+
+#[test]
+fn no_promise_is_broken_on_gpus() {
+    if skips("no_promise_is_broken_on_gpus") {
+        return;
+    }
+    for adapter in all_adapters() {
+        check(&Device::Gpu(Box::new(open(adapter, GpuOptions::default()))));
+    }
+}
+
+#[test]
+fn worlds_keep_their_promises() {
+    for (number, name, wrong) in world_cases() {
+        assert_eq!(wrong, None, "{number} {name}");
+    }
+}
+
+/// The cases can fail: the textbook formula does on those that it is known for.
+#[test]
+fn the_textbook_formula_fails_where_it_is_known_to() {
+    for case in catalogue() {
+        if [1, 2, 3, 4, 8, 26].contains(&case.number) {
+            let verdict = case
+                .judge(&Device::Cpu, Rung::Textbook)
+                .expect("the CPU runs");
+            assert!(
+                matches!(verdict, Verdict::FailsUnpromised(_)),
+                "{} {}: {verdict:?}",
+                case.number,
+                case.name
+            );
+        }
+    }
+}
