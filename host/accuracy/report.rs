@@ -38,7 +38,7 @@ p{margin:.4rem 0;max-width:75ch}.plots{display:flex;flex-wrap:wrap;gap:1rem}figu
 figcaption{font-size:.85rem;color:#555}svg{background:#fff}svg text{font:12px system-ui,sans-serif;fill:#333}\
 table{border-collapse:collapse;font-size:.85rem;margin:.6rem 0}th,td{padding:.15rem .7rem;text-align:right}\
 th{border-bottom:1px solid #999;font-weight:600}td:first-child,th:first-child{text-align:left}\
-code{font-size:.85em}pre{font-size:.75rem;overflow-x:auto;background:#f6f6f6;padding:.7rem}\
+code{font-size:.8em;white-space:nowrap}td{white-space:nowrap}pre{font-size:.75rem;overflow-x:auto;background:#f6f6f6;padding:.7rem}\
 @media print{body{margin:0;max-width:none}section{break-inside:avoid}}";
 
 /// The page. `table` is the same as text, for copying.
@@ -131,9 +131,10 @@ fn scatter(rungs: &[Row<'_>]) -> String {
     let _ = write!(
         svg,
         "<text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"middle\">nanoseconds a test</text>\
-         <text x=\"14\" y=\"{:.1}\" text-anchor=\"middle\" transform=\"rotate(-90 14 {0:.1})\">worst error of t, ulp</text>",
+         <text x=\"14\" y=\"{:.1}\" text-anchor=\"middle\" transform=\"rotate(-90 14 {:.1})\">worst error of t, ulp</text>",
         0.5 * (LEFT + WIDTH - RIGHT),
         HEIGHT - 8.0,
+        0.5 * (TOP + HEIGHT - BOTTOM),
         0.5 * (TOP + HEIGHT - BOTTOM),
     );
 

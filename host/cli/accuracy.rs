@@ -134,11 +134,11 @@ fn table(report: &Report) -> String {
             // Writing to a String cannot fail.
             let _ = writeln!(
                 text,
-                "{:9} {:12} {:>8.3} ± {:<6.3} {:>9.2} {:>12} {:>9} {:>8} {:>8} {:>9}",
+                "{:9} {:12} {:>8} ± {:<7} {:>8.2} {:>12} {:>9} {:>8} {:>8} {:>9}",
                 if index == 0 { family.family } else { "" },
                 rung.rung,
-                price.nanoseconds,
-                0.5 * (price.slowest - price.fastest),
+                digits(price.nanoseconds),
+                digits(0.5 * (price.slowest - price.fastest)),
                 price.nanoseconds / robust,
                 measured.max_ulp_anywhere,
                 measured.ulp_at(0.9999),
@@ -161,6 +161,15 @@ fn table(report: &Report) -> String {
          not found. margin: the largest |Δ| / (a r²) on the wrong side of a silhouette.\n",
     );
     text
+}
+
+/// Three digits or so, from picoseconds to microseconds.
+fn digits(nanoseconds: f64) -> String {
+    match nanoseconds {
+        x if x >= 100.0 => format!("{x:.0}"),
+        x if x >= 1.0 => format!("{x:.2}"),
+        x => format!("{x:.5}"),
+    }
 }
 
 fn page(report: &Report) -> String {

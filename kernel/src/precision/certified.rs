@@ -17,7 +17,7 @@
 //! where |Δ| > E₂, and t is within 1 ulp where E₂ ≤ 2⁻²⁶ √Δ·|q|, |c| ≥ 2⁻¹⁹ (o·o + r²) and
 //! |q| ≥ 2⁻¹⁸ |o||d|.
 //!
-//! **3. Distillation.** Δ, b and c as sums of exact products, summed without loss
+//! **3. Distillation**, of c alone where only c is too close to zero, else of all. Δ, b and c as sums of exact products, summed without loss
 //! ([`crate::arithmetic::distill`]): each is then right to about 40 bits, whatever cancels, and
 //! zero where it is zero, unless it is within 2⁻¹⁰⁰ of cancelling completely, which floats of one
 //! binade cannot. The rest adds numbers of one sign, so that t is within 1 ulp.
@@ -51,8 +51,10 @@ pub enum Stage {
     Filter = 0,
     /// Pairs of floats.
     Pairs = 1,
-    /// Distillation.
-    Distilled = 2,
+    /// Pairs of floats, with c distilled.
+    DistilledC = 2,
+    /// Distillation of everything.
+    Distilled = 3,
 }
 
 impl Precision for Certified {
@@ -73,9 +75,24 @@ pub fn intersect_with_stage(sphere: Sphere, ray: &Ray) -> (f32, Stage) {
     if quadratic.misses_for_certain() {
         return (Hit::NONE_T, Stage::Pairs);
     }
-    if quadratic.is_certain() {
+    if quadratic.size_is_certain() {
+        // All but c: an origin near the surface, or near that of a very large sphere.
+        let c_is_certain = quadratic.c_is_certain();
+        let quadratic = if c_is_certain {
+            quadratic
+        } else {
+            Quadratic {
+                c: distilled_c(&quadratic),
+                ..quadratic
+            }
+        };
         let (near, far) = quadratic.roots();
-        return (choose_root(near, far, ray), Stage::Pairs);
+        let stage = if c_is_certain {
+            Stage::Pairs
+        } else {
+            Stage::DistilledC
+        };
+        return (choose_root(near, far, ray), stage);
     }
     let quadratic = distilled(&quadratic);
     let meets = (quadratic.discriminant.high >= 0.0) & (quadratic.a.high > 0.0);
@@ -117,28 +134,17 @@ fn misses_for_certain(sphere: Sphere, ray: &Ray) -> bool {
 fn distilled(pairs: &Quadratic) -> Quadratic {
     let (o, d, r) = (pairs.o, pairs.d, pairs.r);
 
-    // a = d·d and r² exactly; b = o·d; c = o·o − r².
+    // a = d·d and r² exactly; b = o·d.
     let mut a_terms = [0.0; 6];
     let mut b_terms = [0.0; 12];
-    let mut c_terms = [0.0; 20];
     let mut axis = 0;
     while axis < 3 {
         put_product(&mut a_terms, 2 * axis, d[axis], d[axis]);
         put_product(&mut b_terms, 4 * axis, o[axis].high, d[axis]);
         put_product(&mut b_terms, 4 * axis + 2, o[axis].low, d[axis]);
-        put_product(&mut c_terms, 6 * axis, o[axis].high, o[axis].high);
-        put_product(
-            &mut c_terms,
-            6 * axis + 2,
-            add(o[axis].high, o[axis].high),
-            o[axis].low,
-        );
-        put_product(&mut c_terms, 6 * axis + 4, o[axis].low, o[axis].low);
         axis += 1;
     }
     let rr = two_product(r, r);
-    c_terms[18] = sub(0.0, rr.0);
-    c_terms[19] = sub(0.0, rr.1);
 
     // Δ = a r² − k·k, each component of k as eight terms.
     let mut terms = [0.0; 240];
@@ -179,10 +185,28 @@ fn distilled(pairs: &Quadratic) -> Quadratic {
     Quadratic {
         a: distill(&mut a_terms),
         b: distill(&mut b_terms),
-        c: distill(&mut c_terms),
+        c: distilled_c(pairs),
         discriminant: distill(&mut terms),
         ..*pairs
     }
+}
+
+/// c = o·o − r², distilled.
+#[inline]
+fn distilled_c(pairs: &Quadratic) -> DoubleSingle {
+    let mut terms = [0.0; 20];
+    let mut axis = 0;
+    while axis < 3 {
+        let o = pairs.o[axis];
+        put_product(&mut terms, 6 * axis, o.high, o.high);
+        put_product(&mut terms, 6 * axis + 2, add(o.high, o.high), o.low);
+        put_product(&mut terms, 6 * axis + 4, o.low, o.low);
+        axis += 1;
+    }
+    let rr = two_product(pairs.r, pairs.r);
+    terms[18] = sub(0.0, rr.0);
+    terms[19] = sub(0.0, rr.1);
+    distill(&mut terms)
 }
 
 /// Puts the product, exactly, into two places from `at` on.

@@ -195,21 +195,27 @@ impl Quadratic {
         -self.discriminant.high > self.discriminant_error()
     }
 
-    /// Whether the sign of Δ is certainly positive and both roots are within 1 ulp.
+    /// Whether the sign of Δ is certainly positive, and |q| right to what 1 ulp of t needs.
     #[inline]
     #[must_use]
-    pub fn is_certain(&self) -> bool {
+    pub fn size_is_certain(&self) -> bool {
         let error = self.discriminant_error();
         let root = self.discriminant.high.max(0.0).sqrt();
         let size = self.b.high.abs() + root;
+        (self.discriminant.high > error)
+            & (error <= root * size * two_to_minus(26))
+            & (size * size >= self.size_squared() * two_to_minus(36))
+    }
+
+    /// Whether c is right to what 1 ulp of t needs.
+    #[inline]
+    #[must_use]
+    pub fn c_is_certain(&self) -> bool {
         let oo_and_rr = self.r * self.r
             + self.o[0].high * self.o[0].high
             + self.o[1].high * self.o[1].high
             + self.o[2].high * self.o[2].high;
-        (self.discriminant.high > error)
-            & (error <= root * size * two_to_minus(26))
-            & (self.c.high.abs() >= oo_and_rr * two_to_minus(19))
-            & (size * size >= self.size_squared() * two_to_minus(36))
+        self.c.high.abs() >= oo_and_rr * two_to_minus(19)
     }
 }
 
