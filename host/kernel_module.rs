@@ -29,7 +29,7 @@ pub fn f32() -> Result<Module> {
 ///
 /// # Errors
 ///
-/// As [`f32`].
+/// As [`f32()`].
 pub fn f64() -> Result<Module> {
     embedded("spherule-f64", F64)
 }
@@ -44,7 +44,7 @@ fn embedded(name: &str, bytes: &[u8]) -> Result<Module> {
 ///
 /// # Errors
 ///
-/// As [`f32`].
+/// As [`f32()`].
 pub fn for_rung(rung: Rung) -> Result<Module> {
     let module = match rung {
         Rung::Double => f64(),

@@ -379,3 +379,88 @@ fn help_names_every_command_and_default() {
                 .and(contains("[default: auto]")),
         );
 }
+
+/// `check` keeps its table, its JSON and its exit code in step.
+#[test]
+fn check_reports_every_case_on_every_rung() {
+    spherule()
+        .args(["check", "--device", "cpu"])
+        .assert()
+        .success()
+        .stdout(
+            contains("Earth, camera at 0.1")
+                .and(contains("certified"))
+                .and(contains("Every promise holds on this device.")),
+        );
+    let output = spherule()
+        .args(["check", "--device", "cpu", "--json"])
+        .output()
+        .expect("it runs");
+    let report: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert_eq!(report["promises_kept"], true);
+    let cases = report["cases"].as_array().expect("a list");
+    assert!(cases.len() > 30);
+    for case in cases {
+        assert_eq!(case["rungs"].as_array().map(Vec::len), Some(5), "{case}");
+    }
+}
+
+#[test]
+fn accuracy_writes_a_table_a_page_and_numbers() {
+    let dir = temporary();
+    let (page, numbers) = (
+        dir.path().join("report.html"),
+        dir.path().join("numbers.json"),
+    );
+    spherule()
+        .args([
+            "accuracy", "--device", "cpu", "--rays", "2000", "--scene", "far", "-o",
+        ])
+        .arg(&page)
+        .arg("--json")
+        .arg(&numbers)
+        .assert()
+        .success()
+        .stdout(
+            contains("far")
+                .and(contains("textbook"))
+                .and(contains("ns a test")),
+        );
+    let page = std::fs::read_to_string(page).expect("the page");
+    assert!(
+        page.starts_with("<!doctype html>") && page.contains("<svg") && page.ends_with("</html>\n")
+    );
+    assert!(
+        !page.contains("NaN") && !page.contains("http"),
+        "it needs nothing else"
+    );
+    let text = std::fs::read_to_string(numbers).expect("the numbers");
+    let numbers: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+    let rungs = numbers["families"][0]["rungs"].as_array().expect("a list");
+    assert_eq!(rungs.len(), 5);
+    assert!(
+        rungs[0]["measured"]["false_misses"].as_u64()
+            > rungs[1]["measured"]["false_misses"].as_u64()
+    );
+    assert_eq!(rungs[4]["measured"]["false_misses"], 0);
+}
+
+#[test]
+fn auto_precision_says_what_it_took_and_why() {
+    let dir = temporary();
+    for (scene, size, rung) in [
+        ("scenes/1crn.pdb", "32x18", "textbook"),
+        // A pixel of a small image forgives more.
+        ("scenes/marble-on-earth.toml", "32x18", "double"),
+        ("scenes/marble-on-earth.toml", "960x540", "certified"),
+    ] {
+        spherule()
+            .args(["render", scene, "--device", "cpu", "--size", size, "-o"])
+            .arg(dir.path().join("out.png"))
+            .assert()
+            .success()
+            .stderr(
+                contains(format!("precision {rung} (within ")).and(contains("0.1 are allowed")),
+            );
+    }
+}
