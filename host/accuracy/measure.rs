@@ -290,3 +290,79 @@ fn has_digits_of_c(ray: &Ray, sphere: &Sphere) -> bool {
     let c = oo - f64::from(sphere.radius()).powi(2);
     c.abs() >= oo * 2.0_f64.powi(-20)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::accuracy::families::Family;
+    use spherule_kernel::precision::compensated::Quadratic;
+
+    /// The judge must turn red under each mistake that it is there for.
+    #[test]
+    fn mistakes_are_found() {
+        let samples = Family::Inside.sample(3, 2000);
+        let right = intersect_all(&Device::Cpu, Rung::Certified, &samples).expect("the CPU");
+        let judged = |answers: &[f32]| judge(&samples, answers);
+        let clean = judged(&right);
+        assert_eq!(
+            (clean.false_hits, clean.false_misses, clean.hits),
+            (0, 0, 2000)
+        );
+        assert!(clean.max_ulp <= 1 && clean.ulp_at(1.0) <= 1);
+
+        let off: Vec<f32> = right
+            .iter()
+            .map(|t| t.next_up().next_up().next_up())
+            .collect();
+        assert!(judged(&off).max_ulp >= 2);
+        let missed: Vec<f32> = right.iter().map(|_| Hit::NONE_T).collect();
+        assert_eq!(judged(&missed).false_misses, 2000);
+
+        let outside: Vec<(Ray, Sphere)> = Family::Generic
+            .sample(4, 2000)
+            .into_iter()
+            .filter(|(ray, sphere)| screen::nearest(ray, sphere).is_none())
+            .collect();
+        assert_eq!(
+            judge(&outside, &vec![1.0; outside.len()]).false_hits,
+            outside.len()
+        );
+    }
+
+    /// A sign of q swapped: the other root, and the judge sees it.
+    #[test]
+    fn a_swapped_root_is_found() {
+        let samples = Family::Generic.sample(5, 2000);
+        let swapped: Vec<f32> = samples
+            .iter()
+            .map(|(ray, sphere)| {
+                let quadratic = Quadratic::of(*sphere, ray);
+                if quadratic.discriminant.high >= 0.0 {
+                    let (near, far) = quadratic.roots();
+                    spherule_kernel::precision::choose_root(far, near, ray)
+                } else {
+                    Hit::NONE_T
+                }
+            })
+            .collect();
+        assert!(judge(&samples, &swapped).max_ulp > 1000);
+    }
+
+    /// The low part of o deleted: on the ground, where O − C is inexact, the digits are gone.
+    #[test]
+    fn a_deleted_low_part_is_found() {
+        let samples = Family::Ground.sample(6, 2000);
+        let rounded: Vec<(Ray, Sphere)> = samples
+            .iter()
+            .map(|(ray, sphere)| {
+                let moved = Ray {
+                    origin: ray.origin - sphere.center(),
+                    ..*ray
+                };
+                (moved, Sphere::new(glam::Vec3::ZERO, sphere.radius()))
+            })
+            .collect();
+        let answers = intersect_all(&Device::Cpu, Rung::Compensated, &rounded).expect("the CPU");
+        assert!(judge(&samples, &answers).max_ulp > 1000);
+    }
+}

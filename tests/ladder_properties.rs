@@ -1,0 +1,103 @@
+//! Properties of each rung over arbitrary inputs of the domain, with counterexamples shrunk to
+//! something that can be read.
+
+use glam::Vec3;
+use proptest::prelude::*;
+use spherule::accuracy::oracle::Intersection;
+use spherule::accuracy::ulp;
+use spherule::kernel::precision::intersect;
+use spherule::kernel::{Hit, Ray, Rung, Sphere};
+
+/// A coordinate of the domain: anything up to 2²⁰, with small numbers as likely as large ones.
+fn coordinate() -> impl Strategy<Value = f32> {
+    (-1.0_f32..1.0, -20_i32..=20).prop_map(|(m, e)| m * 2.0_f32.powi(e))
+}
+
+fn vector() -> impl Strategy<Value = Vec3> {
+    [coordinate(), coordinate(), coordinate()].prop_map(Vec3::from_array)
+}
+
+/// A radius of the domain, 2⁻¹⁰ to 2²³.
+fn radius() -> impl Strategy<Value = f32> {
+    (1.0_f32..2.0, -10_i32..23).prop_map(|(m, e)| m * 2.0_f32.powi(e))
+}
+
+/// A ray that passes the sphere at a distance of `off` radii from its centre, from anywhere: most
+/// lines through random points miss by far, and tell nothing.
+fn aimed() -> impl Strategy<Value = (Ray, Sphere)> {
+    (
+        vector(),
+        vector(),
+        radius(),
+        vector(),
+        -1.2_f32..1.2,
+        -10_i32..10,
+    )
+        .prop_filter_map(
+            "the direction is in the domain",
+            |(origin, center, radius, aside, off, scale)| {
+                let target = center + aside.try_normalize()? * (off * radius);
+                let direction = (target - origin).try_normalize()? * 2.0_f32.powi(scale);
+                Some((Ray::new(origin, direction), Sphere::new(center, radius)))
+            },
+        )
+}
+
+fn answer(rung: Rung, ray: &Ray, sphere: Sphere) -> Option<f32> {
+    let t = intersect(rung.to_u32(), sphere, ray);
+    assert!(!t.is_nan());
+    (t < Hit::NONE_T).then_some(t)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(4000))]
+
+    #[test]
+    fn certified_is_the_truth((ray, sphere) in aimed()) {
+        let truth = Intersection::of(&ray, &sphere).and_then(|exact| exact.nearest(&ray));
+        let found = answer(Rung::Certified, &ray, sphere);
+        prop_assert_eq!(found.is_some(), truth.is_some(), "{:?} {:?}", found, truth);
+        if let (Some(found), Some(truth)) = (found, truth) {
+            prop_assert!(ulp::distance(found, truth) <= 1, "{found:e} {truth:e}");
+        }
+    }
+
+    /// Outside of the margin on |Δ| / (a r²), the class is right; and t is within 1 ulp where c has
+    /// digits.
+    #[test]
+    fn compensated_and_double_are_right_outside_their_margin((ray, sphere) in aimed()) {
+        let exact = Intersection::of(&ray, &sphere).expect("a line");
+        let o = ray.origin.as_dvec3() - sphere.center().as_dvec3();
+        let r = f64::from(sphere.radius());
+        let relative = 1.0 + o.length() / r;
+        let c_has_digits = (o.length_squared() - r * r).abs()
+            >= 2.0_f64.powi(-19) * (o.length_squared() + r * r);
+        for (rung, bits) in [(Rung::Compensated, -38), (Rung::Double, -46)] {
+            if exact.margin() <= 2.0_f64.powi(bits) * relative * relative || !c_has_digits {
+                continue;
+            }
+            let truth = exact.nearest(&ray);
+            let found = answer(rung, &ray, sphere);
+            prop_assert_eq!(found.is_some(), truth.is_some(), "{} {:?} {:?}", rung.name(), found, truth);
+            // The error of √Δ counts only where Δ is not tiny.
+            if let (Some(found), Some(truth)) = (found, truth)
+                && exact.margin() > 2.0_f64.powi(bits / 2)
+            {
+                prop_assert!(ulp::distance(found, truth) <= 1, "{} {found:e} {truth:e}", rung.name());
+            }
+        }
+    }
+
+    /// No rung gives a NaN, or a parameter outside of the ray's interval, whatever it is fed.
+    #[test]
+    fn every_answer_is_in_the_rays_interval(bits in prop::array::uniform12(any::<u32>())) {
+        let [ox, oy, oz, dx, dy, dz, cx, cy, cz, r, t_min, t_max] = bits.map(f32::from_bits);
+        let ray = Ray::within(Vec3::new(ox, oy, oz), Vec3::new(dx, dy, dz), t_min, t_max);
+        let sphere = Sphere::new(Vec3::new(cx, cy, cz), r);
+        for rung in Rung::ALL {
+            if let Some(t) = answer(rung, &ray, sphere) {
+                prop_assert!(t >= t_min && t < t_max, "{}: {t:e}", rung.name());
+            }
+        }
+    }
+}
