@@ -6,10 +6,11 @@ use rayon::prelude::*;
 use serde::Serialize;
 use spherule_kernel::precision::certified::intersect_with_stage;
 use spherule_kernel::precision::intersect;
-use spherule_kernel::{Hit, Ray, Rung, Sphere};
+use spherule_kernel::{Hit, Ray, Rung, Sphere, Surface};
 
 use super::canary::Canary;
 use super::oracle::Intersection;
+use super::random::Random;
 use super::{screen, ulp};
 use crate::device::{Access, Device, Gpu};
 use crate::error::Result;
@@ -35,6 +36,8 @@ pub struct Measured {
     pub max_ulp_anywhere: u32,
     /// Hits whose t is off by more than four units in the last place.
     pub over_4_ulp: usize,
+    /// The largest angle between the normal at the reported hit and the true one, in degrees.
+    pub normal_degrees: f64,
     /// How many hits are off by how much: the first counts those that are exact, the n-th those off
     /// by 2ⁿ⁻² up to 2ⁿ⁻¹ − 1 units in the last place (1; 2 and 3; 4 to 7; …).
     pub histogram: Vec<usize>,
@@ -205,6 +208,7 @@ impl Measured {
             max_ulp: 0,
             max_ulp_anywhere: 0,
             over_4_ulp: 0,
+            normal_degrees: 0.0,
             histogram: vec![0; 34],
             worst: None,
         }
@@ -233,6 +237,9 @@ impl Measured {
         let Some(truth) = truth else { return };
         let off = ulp::distance(found, truth);
         self.over_4_ulp += usize::from(off > 4);
+        self.normal_degrees = self
+            .normal_degrees
+            .max(normal_error(ray, sphere, found, truth).to_degrees());
         self.histogram[(u32::BITS - off.leading_zeros()) as usize] += 1;
         if has_digits_of_c(ray, sphere) {
             self.max_ulp = self.max_ulp.max(off);
@@ -272,6 +279,7 @@ impl Measured {
             max_ulp: self.max_ulp.max(other.max_ulp),
             max_ulp_anywhere: self.max_ulp_anywhere.max(other.max_ulp_anywhere),
             over_4_ulp: self.over_4_ulp + other.over_4_ulp,
+            normal_degrees: self.normal_degrees.max(other.normal_degrees),
             histogram: self
                 .histogram
                 .iter()
@@ -281,6 +289,49 @@ impl Measured {
             worst,
         }
     }
+}
+
+/// The angle between the kernel's normal at `found` and the normal at `truth`, in radians.
+fn normal_error(ray: &Ray, sphere: &Sphere, found: f32, truth: f32) -> f64 {
+    let normal = Surface::at(ray, found, *sphere).normal.as_dvec3();
+    let o = ray.origin.as_dvec3() - sphere.center().as_dvec3();
+    let exact = (o + ray.direction.as_dvec3() * f64::from(truth)).normalize_or_zero();
+    normal.cross(exact).length().atan2(normal.dot(exact))
+}
+
+/// How many of the rays that leave the reported hits, outwards in a random direction, hit the same
+/// sphere again on this rung and device.
+///
+/// # Errors
+///
+/// As [`intersect_all`].
+pub fn self_hits(
+    device: &Device,
+    rung: Rung,
+    samples: &[(Ray, Sphere)],
+    answers: &[f32],
+) -> Result<usize> {
+    let mut random = Random::new(1);
+    let leaving: Vec<(Ray, Sphere)> = samples
+        .iter()
+        .zip(answers)
+        .filter(|(_, t)| **t < Hit::NONE_T)
+        .map(|((ray, sphere), t)| {
+            let surface = Surface::at(ray, *t, *sphere);
+            let direction = random.unit_vec3();
+            let outwards = if direction.dot(surface.normal) < 0.0 {
+                -direction
+            } else {
+                direction
+            };
+            (surface.leave(outwards), *sphere)
+        })
+        .collect();
+    if leaving.is_empty() {
+        return Ok(0);
+    }
+    let again = intersect_all(device, rung, &leaving)?;
+    Ok(again.iter().filter(|t| **t < Hit::NONE_T).count())
 }
 
 /// Whether |c| ≥ 2⁻²⁰ |o|²: the origin is not so close to the surface that c loses its digits.

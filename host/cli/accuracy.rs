@@ -11,7 +11,7 @@ use super::args::AccuracyArguments;
 use super::{note, print};
 use crate::accuracy::canary::Canary;
 use crate::accuracy::families::Family;
-use crate::accuracy::measure::{Escalation, Measured, intersect_all, judge};
+use crate::accuracy::measure::{Escalation, Measured, intersect_all, judge, self_hits};
 use crate::accuracy::price::{self, Price};
 use crate::accuracy::report;
 use crate::device::Device;
@@ -40,6 +40,8 @@ struct RungReport {
     rung: &'static str,
     price: Price,
     measured: Measured,
+    /// Rays that left a hit outwards and hit the same sphere again.
+    self_hits: usize,
 }
 
 const SEED: u64 = 2026;
@@ -70,6 +72,7 @@ pub(super) fn run(arguments: &AccuracyArguments) -> Result<ExitCode> {
                 rung: rung.name(),
                 price,
                 measured: judge(&samples, &answers),
+                self_hits: self_hits(&device, *rung, &samples, &answers)?,
             });
         }
         families.push(FamilyReport {
@@ -110,7 +113,7 @@ fn write(path: &Path, text: &str) -> Result<()> {
 
 fn table(report: &Report) -> String {
     let mut text = format!(
-        "{}, {} rays a family\n\n{:9} {:12} {:>17} {:>9} {:>12} {:>9} {:>8} {:>8} {:>9}\n",
+        "{}, {} rays a family\n\n{:9} {:12} {:>17} {:>9} {:>12} {:>11} {:>7} {:>7} {:>8} {:>8} {:>8}\n",
         report.device,
         report.rays_a_family,
         "family",
@@ -122,6 +125,8 @@ fn table(report: &Report) -> String {
         "false",
         "missed",
         "margin",
+        "self",
+        "normal°",
     );
     for family in &report.families {
         let robust = family
@@ -134,7 +139,7 @@ fn table(report: &Report) -> String {
             // Writing to a String cannot fail.
             let _ = writeln!(
                 text,
-                "{:9} {:12} {:>8} ± {:<7} {:>8.2} {:>12} {:>9} {:>8} {:>8} {:>9}",
+                "{:9} {:12} {:>8} ± {:<7} {:>8.2} {:>12} {:>11} {:>7} {:>7} {:>8} {:>8} {:>8}",
                 if index == 0 { family.family } else { "" },
                 rung.rung,
                 digits(price.nanoseconds),
@@ -149,6 +154,8 @@ fn table(report: &Report) -> String {
                 } else {
                     "–".into()
                 },
+                rung.self_hits,
+                format!("{:.1e}", measured.normal_degrees),
             );
         }
         let _ = writeln!(text, "{:9} {}\n", "", family.escalation);
@@ -158,7 +165,8 @@ fn table(report: &Report) -> String {
     }
     text.push_str(
         "ulp: error of t in units in the last place, over the hits. false, missed: hits reported that are none, hits\n\
-         not found. margin: the largest |Δ| / (a r²) on the wrong side of a silhouette.\n",
+         not found. margin: the largest |Δ| / (a r²) on the wrong side of a silhouette. self: rays that leave a hit\n\
+         outwards and hit its sphere again. normal°: the largest error of the normal.\n",
     );
     text
 }
