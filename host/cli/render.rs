@@ -169,7 +169,11 @@ fn choose_rung(arguments: &RenderArguments, scene: &Scene, device: &Device) -> (
     if let Some(rung) = arguments.precision.rung() {
         return (rung, "asked for".into());
     }
-    let choice = choose(scene, arguments.tolerance, matches!(device, Device::Cpu));
+    let has_f64 = match device {
+        Device::Cpu => true,
+        Device::Gpu(gpu) => gpu.has_f64(),
+    };
+    let choice = choose(scene, arguments.tolerance, has_f64);
     let mut why = format!(
         "within {:.1e} pixels, {} are allowed",
         choice.bound, arguments.tolerance
