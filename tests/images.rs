@@ -282,20 +282,7 @@ fn splitting_changes_nothing() {
 }
 
 fn launch_of(scene: &Scene) -> Launch {
-    let size = glam::UVec2::new(scene.width, scene.height);
-    Launch {
-        camera: scene
-            .view_or_framed()
-            .camera(scene.aspect())
-            .expect("a camera"),
-        background: scene.background,
-        first_of_tile: 1,
-        image_size: size,
-        tile_origin: glam::UVec2::ZERO,
-        tile_size: size,
-        first_sphere: 0,
-        sphere_count: u32::MAX,
-    }
+    render::whole_image(scene).expect("the scene is sound")
 }
 
 /// Every thread writes its pixel: a buffer filled with a sentinel keeps none of it.

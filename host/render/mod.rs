@@ -112,7 +112,11 @@ pub fn render(
 }
 
 /// The launch that covers the whole image and every sphere; tiles and runs are cut out of it.
-fn whole_image(scene: &Scene) -> Result<Launch> {
+///
+/// # Errors
+///
+/// [`Error::Scene`] if the scene's view is degenerate or its world inconsistent.
+pub fn whole_image(scene: &Scene) -> Result<Launch> {
     let world = &scene.world;
     if let Some(id) = world
         .material_ids
