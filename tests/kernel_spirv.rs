@@ -50,17 +50,21 @@ fn the_modules_have_the_entry_points_that_the_host_calls() {
             .collect();
         names.sort_unstable();
         let mut expected = vec![
+            "cross_boundaries",
             "find_surfaces",
             "intersect_pairs",
             "make_camera_rays",
             "measure_arithmetic",
             "measure_layout",
+            "occlude_rays",
             "render",
             "shade_hits",
             "trace_rays",
+            "walk_inside_spheres",
         ];
         if needs_f64 {
-            expected.insert(5, "measure_wide_arithmetic");
+            expected.push("measure_wide_arithmetic");
+            expected.sort_unstable();
         }
         assert_eq!(names, expected);
         assert_eq!(module.needs_f64(), needs_f64);
@@ -140,6 +144,9 @@ fn check_offsets(bytes: &[u8]) {
         fields("Ray"),
         fields("Hit"),
         fields("Launch"),
+        fields("Incidence"),
+        fields("Fresnel"),
+        fields("Walk"),
         with_padding(&fields("Camera"), 12),
         with_padding(&fields("Material"), 12),
     ];

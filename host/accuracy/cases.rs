@@ -6,7 +6,7 @@
 
 use glam::Vec3;
 use serde::Serialize;
-use spherule_kernel::{Hit, Ray, Rung, Sphere, Surface, nearest_hit};
+use spherule_kernel::{Hit, Ray, Rung, Sphere, Surface};
 
 use super::measure::intersect_all;
 use super::oracle::Intersection;
@@ -14,7 +14,6 @@ use super::random::Random;
 use super::ulp;
 use crate::device::Device;
 use crate::error::Result;
-use crate::scene::toml_file;
 
 /// A ray and a sphere, and what must come out.
 #[derive(Clone, Copy, Debug)]
@@ -60,6 +59,16 @@ pub enum Verdict {
 }
 
 impl Verdict {
+    /// The verdict on what is wrong, if anything, with or without a promise.
+    #[must_use]
+    pub fn of(wrong: Option<String>, promised: bool) -> Self {
+        match wrong {
+            None => Self::Holds,
+            Some(wrong) if promised => Self::Fails(wrong),
+            Some(wrong) => Self::FailsUnpromised(wrong),
+        }
+    }
+
     /// Whether a promise is broken.
     #[must_use]
     pub fn is_broken(&self) -> bool {
@@ -67,9 +76,9 @@ impl Verdict {
     }
 }
 
-const ALL: &[Rung] = &Rung::ALL;
-const UPPER: &[Rung] = &[Rung::Compensated, Rung::Double, Rung::Certified];
-const CERTIFIED: &[Rung] = &[Rung::Certified];
+pub(super) const ALL: &[Rung] = &Rung::ALL;
+pub(super) const UPPER: &[Rung] = &[Rung::Compensated, Rung::Double, Rung::Certified];
+pub(super) const CERTIFIED: &[Rung] = &[Rung::Certified];
 
 impl Case {
     /// How `rung` does on this case on `device`.
@@ -87,11 +96,7 @@ impl Case {
         let mut last = 0.0;
         for (probe, found) in self.probes.iter().zip(answers) {
             if let Some(wrong) = probe.objection(found, last) {
-                return Ok(if self.promised_by.contains(&rung) {
-                    Verdict::Fails(wrong)
-                } else {
-                    Verdict::FailsUnpromised(wrong)
-                });
+                return Ok(Verdict::of(Some(wrong), self.promised_by.contains(&rung)));
             }
             last = found;
         }
@@ -567,67 +572,4 @@ pub fn catalogue() -> Vec<Case> {
         ALL,
     ));
     cases
-}
-
-/// A case that concerns a whole world, or the host: its number, its name, and what is wrong with
-/// it, if anything. These run the kernel's functions on the CPU.
-#[must_use]
-pub fn world_cases() -> Vec<(u8, &'static str, Option<String>)> {
-    let along = |spheres: &[Sphere]| nearest_hit(&Ray::new(v(0.0, 0.0, 5.0), Vec3::NEG_Z), spheres);
-    let expect = |found: Hit, sphere: u32| {
-        (found.sphere != sphere).then(|| format!("{found:?}, must be sphere {sphere}"))
-    };
-    let four = |r: f32| Sphere::new(Vec3::ZERO, r);
-    let concentric = [
-        four(4.0),
-        four(4.0_f32.next_up()),
-        four(4.0_f32.next_down()),
-    ];
-    let refused = toml_file::parse(
-        std::path::Path::new("negative.toml"),
-        "[[sphere]]\ncenter = [0, 0, 0]\nradius = -1\n".into(),
-    );
-    let huge = Sphere::new(v(1e6, -2e6, 3e6), 2.0);
-    let towards = Ray::new(huge.center() + v(0.0, 0.0, 8.0), Vec3::NEG_Z);
-    let surface = Surface::at(&towards, huge.intersect(&towards), huge);
-    let drift = (surface.point - huge.center()).length() - huge.radius();
-    vec![
-        (
-            30,
-            "negative radius: refused at load",
-            refused.is_ok().then(|| "a scene was read".into()),
-        ),
-        (
-            33,
-            "concentric spheres one ulp apart: in order",
-            expect(along(&concentric), 1),
-        ),
-        (
-            34,
-            "coincident spheres: the lowest index",
-            expect(along(&[four(1.0); 3]), 0),
-        ),
-        (
-            35,
-            "overlapping and touching spheres: the nearest",
-            expect(
-                along(&[
-                    Sphere::new(v(0.0, 0.0, -1.0), 1.0),
-                    Sphere::new(v(0.0, 0.0, 1.0), 1.0),
-                    Sphere::new(v(0.0, 0.0, 0.5), 1.0),
-                ]),
-                1,
-            ),
-        ),
-        (
-            36,
-            "normal of a sphere with huge |C|",
-            ((surface.normal - Vec3::Z).length() > 1e-6).then(|| format!("{:?}", surface.normal)),
-        ),
-        (
-            37,
-            "|p − C| − r at the hit: within its bound",
-            (drift.abs() > surface.error).then(|| format!("{drift} beyond {}", surface.error)),
-        ),
-    ]
 }

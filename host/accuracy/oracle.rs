@@ -178,6 +178,25 @@ impl Intersection {
     }
 }
 
+/// Whether light is transmitted that meets a boundary at this cosine, where the refractive index on
+/// its side is `eta` times that on the other: whether η²(1 − cos²) ≤ 1, exactly. False where a
+/// number is not finite.
+#[must_use]
+pub fn is_transmitted(cosine: f32, eta: f32) -> bool {
+    if !(cosine.is_finite() && eta.is_finite()) {
+        return false;
+    }
+    let (c, c_exponent) = decompose(cosine);
+    let (e, e_exponent) = decompose(eta);
+    // In units of two to the smaller exponent, all of them: both exponents are at most 104.
+    let unit = 2 * c_exponent.min(0);
+    let one = BigInt::from(1) << (-unit) as u64;
+    let squared_sine = &one - ((&c * &c) << (2 * c_exponent - unit) as u64);
+    let e_unit = 2 * e_exponent.min(0);
+    let squared_eta = (&e * &e) << (2 * e_exponent - e_unit) as u64;
+    squared_eta * squared_sine <= one << (-e_unit) as u64
+}
+
 fn sign(value: &BigInt) -> i32 {
     match value.sign() {
         Sign::Minus => -1,
@@ -315,6 +334,23 @@ mod tests {
     }
 
     /// A line that touches a sphere in rational coordinates, by Pythagoras: 3² + 4² = 5².
+    #[test]
+    fn light_passes_up_to_the_critical_angle() {
+        // No boundary: everything passes. Into a denser medium too.
+        assert!(is_transmitted(0.0, 1.0) && is_transmitted(1e-30, 0.5));
+        // sin² = 0.64 and 0.36 are just not what floats make of 0.6² and 0.8².
+        for (cosine, eta) in [(0.6_f32, 1.25_f32), (0.8, 5.0 / 3.0)] {
+            let kappa = 1.0 - f64::from(eta).powi(2) * (1.0 - f64::from(cosine).powi(2));
+            assert!(
+                kappa.abs() > 1e-10,
+                "{kappa} is too close to call in 64 bits"
+            );
+            assert_eq!(is_transmitted(cosine, eta), kappa > 0.0);
+        }
+        assert!(!is_transmitted(0.5, 2.0) && is_transmitted(0.9, 2.0));
+        assert!(!is_transmitted(f32::NAN, 1.5));
+    }
+
     #[test]
     fn pythagorean_tangents_touch_and_their_neighbours_do_not() {
         for (p, q, r) in [

@@ -3,6 +3,7 @@
 
 use std::fmt::Write;
 
+use super::frames::Frame;
 use super::measure::Measured;
 use super::price::Price;
 
@@ -38,12 +39,18 @@ p{margin:.4rem 0;max-width:75ch}.plots{display:flex;flex-wrap:wrap;gap:1rem}figu
 figcaption{font-size:.85rem;color:#555}svg{background:#fff}svg text{font:12px system-ui,sans-serif;fill:#333}\
 table{border-collapse:collapse;font-size:.85rem;margin:.6rem 0}th,td{padding:.15rem .7rem;text-align:right}\
 th{border-bottom:1px solid #999;font-weight:600}td:first-child,th:first-child{text-align:left}\
-code{font-size:.8em;white-space:nowrap}td{white-space:nowrap}pre{font-size:.75rem;overflow-x:auto;background:#f6f6f6;padding:.7rem}\
+code{font-size:.8em}pre{font-size:.75rem;overflow-x:auto;background:#f6f6f6;padding:.7rem}\
 @media print{body{margin:0;max-width:none}section{break-inside:avoid}}";
 
-/// The page. `table` is the same as text, for copying.
+/// The page. `frames` are those of a scene, by its name; `table` is all of it as text, for copying.
 #[must_use]
-pub fn page(device: &str, rays: u32, families: &[Family<'_>], table: &str) -> String {
+pub fn page(
+    device: &str,
+    rays: u32,
+    families: &[Family<'_>],
+    frames: Option<(&str, &[Frame])>,
+    table: &str,
+) -> String {
     let mut html = format!(
         "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\
          <meta name=\"viewport\" content=\"width=device-width\">\
@@ -68,6 +75,19 @@ pub fn page(device: &str, rays: u32, families: &[Family<'_>], table: &str) -> St
             escape(&family.note),
         );
     }
+    if let Some((scene, frames)) = frames {
+        let _ = writeln!(
+            html,
+            "<section><h2>Frames of {}</h2><div class=\"plots\"><figure>{}<figcaption>ꟻLIP against the reference, and \
+             time</figcaption></figure><figure>{}<figcaption>pixels that differ from the reference, and \
+             time</figcaption></figure></div><p>The reference is what the CPU renders on <code>certified</code>.</p></section>",
+            escape(scene),
+            frame_plot(frames, "mean ꟻLIP", |frame| frame.flip),
+            frame_plot(frames, "share of the pixels", |frame| {
+                frame.differing as f64 / frame.pixels.max(1) as f64
+            }),
+        );
+    }
     let _ = write!(
         html,
         "<h2>The numbers</h2><pre>{}</pre>\n</body></html>\n",
@@ -83,39 +103,118 @@ const RIGHT: f64 = 96.0;
 const TOP: f64 = 14.0;
 const BOTTOM: f64 = 44.0;
 
-/// The error on the vertical axis: log₂(1 + ulp), from 0 to 32.
-fn height_of(ulp: f64) -> f64 {
-    HEIGHT - BOTTOM - (1.0 + ulp).log2() / 32.0 * (HEIGHT - TOP - BOTTOM)
+/// Where the plot's own rectangle puts a height from 0 to 1.
+fn y_of(height: f64) -> f64 {
+    HEIGHT - BOTTOM - height * (HEIGHT - TOP - BOTTOM)
 }
 
+/// A point of a plot against time.
+struct Point {
+    label: String,
+    /// Median, fastest and slowest time.
+    time: f64,
+    fastest: f64,
+    slowest: f64,
+    /// From 0, the bottom of the plot, to 1.
+    height: f64,
+}
+
+/// The worst error of t against the time of a test.
 fn scatter(rungs: &[Row<'_>]) -> String {
-    let low = rungs
+    // log₂(1 + ulp), from 0 to 32.
+    let height = |ulp: f64| (1.0 + ulp).log2() / 32.0;
+    let points: Vec<Point> = rungs
         .iter()
-        .map(|row| row.price.fastest)
-        .fold(f64::MAX, f64::min);
-    let high = rungs
-        .iter()
-        .map(|row| row.price.slowest)
-        .fold(0.0, f64::max);
-    let (low, high) = ((0.8 * low).max(1e-6).ln(), (1.25 * high).max(1e-5).ln());
-    let x = |time: f64| LEFT + (time.max(1e-9).ln() - low) / (high - low) * (WIDTH - LEFT - RIGHT);
-    let mut svg = open_svg("worst error in ulp against nanoseconds a test");
-    for (label, ulp) in [
+        .map(|row| {
+            let wrong = row.measured.false_hits + row.measured.false_misses;
+            Point {
+                label: if wrong > 0 {
+                    format!("{} ({wrong})", row.rung)
+                } else {
+                    row.rung.to_owned()
+                },
+                time: row.price.nanoseconds,
+                fastest: row.price.fastest,
+                slowest: row.price.slowest,
+                height: height(f64::from(row.measured.max_ulp_anywhere)),
+            }
+        })
+        .collect();
+    let ticks = [
         ("0", 0.0),
         ("1", 1.0),
         ("2⁸", 255.0),
         ("2¹⁶", 65_535.0),
         ("2²⁴", 16_777_215.0),
         ("2³²", 4_294_967_295.0),
-    ] {
-        axis_line(&mut svg, label, height_of(ulp));
+    ]
+    .map(|(label, ulp)| (label, height(ulp)));
+    against_time(
+        &points,
+        "nanoseconds a test",
+        "worst error of t, ulp",
+        &ticks,
+    )
+}
+
+/// Something of a frame, from 10⁻⁶ to 1, against its time.
+fn frame_plot(frames: &[Frame], what: &str, value: impl Fn(&Frame) -> f64) -> String {
+    // Zero has a place of its own, below 10⁻⁶.
+    let height = |value: f64| {
+        if value > 0.0 {
+            ((value.log10() + 7.0) / 7.0).clamp(0.0, 1.0)
+        } else {
+            0.0
+        }
+    };
+    let points: Vec<Point> = frames
+        .iter()
+        .map(|frame| Point {
+            label: frame.rung.to_owned(),
+            time: frame.milliseconds,
+            fastest: frame.fastest,
+            slowest: frame.slowest,
+            height: height(value(frame)),
+        })
+        .collect();
+    let ticks = [
+        ("0", 0.0),
+        ("10⁻⁶", 1e-6),
+        ("10⁻⁴", 1e-4),
+        ("0.01", 1e-2),
+        ("1", 1.0),
+    ]
+    .map(|(label, at)| (label, height(at)));
+    against_time(&points, "milliseconds a frame", what, &ticks)
+}
+
+/// Points against time, both lower the better, with the line that joins those that no other beats in
+/// both.
+fn against_time(points: &[Point], time: &str, what: &str, ticks: &[(&str, f64)]) -> String {
+    let fastest = points.iter().map(|p| p.fastest).fold(f64::MAX, f64::min);
+    let slowest = points.iter().map(|p| p.slowest).fold(0.0, f64::max);
+    let (low, high) = (
+        (0.8 * fastest).max(1e-6).ln(),
+        (1.25 * slowest).max(1e-5).ln(),
+    );
+    let x = |time: f64| LEFT + (time.max(1e-9).ln() - low) / (high - low) * (WIDTH - LEFT - RIGHT);
+    let mut svg = open_svg(&format!("{what} against {time}"));
+    for (label, height) in ticks {
+        axis_line(&mut svg, label, y_of(*height));
     }
+    let decades = (high - low) / 10.0_f64.ln();
+    let steps: &[f64] = if decades > 2.5 {
+        &[1.0]
+    } else {
+        &[1.0, 2.0, 5.0]
+    };
     let mut decade = 10.0_f64.powf((low / 10.0_f64.ln()).floor());
     while decade.ln() < high {
-        for step in [1.0, 2.0, 5.0] {
+        for step in steps {
             let time = decade * step;
             if time.ln() > low && time.ln() < high {
                 let at = x(time);
+                // Writing to a String cannot fail.
                 let _ = write!(
                     svg,
                     "<line x1=\"{at:.1}\" x2=\"{at:.1}\" y1=\"{TOP}\" y2=\"{:.1}\" stroke=\"#eee\"/>\
@@ -130,30 +229,22 @@ fn scatter(rungs: &[Row<'_>]) -> String {
     }
     let _ = write!(
         svg,
-        "<text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"middle\">nanoseconds a test</text>\
-         <text x=\"14\" y=\"{:.1}\" text-anchor=\"middle\" transform=\"rotate(-90 14 {:.1})\">worst error of t, ulp</text>",
+        "<text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{time}</text>\
+         <text x=\"14\" y=\"{:.1}\" text-anchor=\"middle\" transform=\"rotate(-90 14 {:.1})\">{what}</text>",
         0.5 * (LEFT + WIDTH - RIGHT),
         HEIGHT - 8.0,
         0.5 * (TOP + HEIGHT - BOTTOM),
         0.5 * (TOP + HEIGHT - BOTTOM),
     );
 
-    let points: Vec<(f64, f64)> = rungs
-        .iter()
-        .map(|row| {
-            (
-                x(row.price.nanoseconds),
-                height_of(f64::from(row.measured.max_ulp_anywhere)),
-            )
-        })
-        .collect();
-    // The Pareto line, from the cheapest rung to the most accurate.
-    let mut order: Vec<usize> = (0..rungs.len()).collect();
-    order.sort_by(|a, b| points[*a].0.total_cmp(&points[*b].0));
+    let places: Vec<(f64, f64)> = points.iter().map(|p| (x(p.time), y_of(p.height))).collect();
+    // The Pareto line, from the cheapest to the most accurate.
+    let mut order: Vec<usize> = (0..points.len()).collect();
+    order.sort_by(|a, b| places[*a].0.total_cmp(&places[*b].0));
     let mut best = f64::MIN;
     let mut path = String::new();
     for index in order {
-        let (x, y) = points[index];
+        let (x, y) = places[index];
         if y > best {
             best = y;
             let _ = write!(
@@ -167,37 +258,58 @@ fn scatter(rungs: &[Row<'_>]) -> String {
         svg,
         "<path d=\"{path}\" fill=\"none\" stroke=\"#999\" stroke-dasharray=\"4 3\"/>"
     );
-    // Labels that would lie on each other move apart.
-    let mut labels: Vec<(f64, usize)> = points.iter().map(|p| p.1).zip(0..).collect();
-    labels.sort_by(|a, b| a.0.total_cmp(&b.0));
-    for index in 1..labels.len() {
-        labels[index].0 = labels[index].0.max(labels[index - 1].0 + 14.0);
-    }
-    let overshoot = labels
-        .last()
-        .map_or(0.0, |last| (last.0 - (HEIGHT - BOTTOM)).max(0.0));
-    for (label_y, index) in labels {
-        let (row, (x0, y0)) = (&rungs[index], points[index]);
-        let wrong = row.measured.false_hits + row.measured.false_misses;
+    for (index, (point, (x0, y0))) in points.iter().zip(&places).enumerate() {
         let _ = write!(
             svg,
             "<line x1=\"{:.1}\" x2=\"{:.1}\" y1=\"{y0:.1}\" y2=\"{y0:.1}\" stroke=\"{color}\"/>\
-             <circle cx=\"{x0:.1}\" cy=\"{y0:.1}\" r=\"4.5\" fill=\"{color}\"/>\
-             <text x=\"{:.1}\" y=\"{:.1}\" style=\"fill:{color}\">{}{}</text>",
-            x(row.price.fastest),
-            x(row.price.slowest),
-            x0 + 8.0,
-            label_y - overshoot + 4.0,
-            escape(row.rung),
-            if wrong > 0 {
-                format!(" ({wrong})")
-            } else {
-                String::new()
-            },
+             <circle cx=\"{x0:.1}\" cy=\"{y0:.1}\" r=\"4.5\" fill=\"{color}\"/>",
+            x(point.fastest),
+            x(point.slowest),
             color = COLORS[index % COLORS.len()],
         );
     }
+    let ends: Vec<f64> = points.iter().map(|p| x(p.slowest)).collect();
+    write_labels(&mut svg, points, &places, &ends);
     svg + "</svg>"
+}
+
+/// Writes each label beside its point, whose bar ends at `ends`, at the nearest height at which it
+/// lies on no other.
+fn write_labels(svg: &mut String, points: &[Point], places: &[(f64, f64)], ends: &[f64]) {
+    const LINE: f64 = 14.0;
+    // Boxes that are taken: left, right and height of the middle. The points themselves are too.
+    let mut taken: Vec<(f64, f64, f64)> =
+        places.iter().map(|(x, y)| (x - 6.0, x + 6.0, *y)).collect();
+    for (index, (point, (x0, y0))) in points.iter().zip(places).enumerate() {
+        // Right of the bar that shows the spread.
+        let left = (x0 + 8.0).max(ends[index] + 3.0);
+        let right = left + 6.6 * point.label.chars().count() as f64;
+        let is_free = |y: f64, taken: &[(f64, f64, f64)]| {
+            (TOP..HEIGHT - BOTTOM + 4.0).contains(&y)
+                && taken
+                    .iter()
+                    .all(|(l, r, at)| *r < left || *l > right || (at - y).abs() >= LINE - 1.0)
+        };
+        let y = (0..20)
+            .flat_map(|step| [-1.0, 1.0].map(|side| y0 + side * f64::from(step) * 0.5 * LINE))
+            .find(|y| is_free(*y, &taken))
+            .unwrap_or(*y0);
+        taken.push((left, right, y));
+        let color = COLORS[index % COLORS.len()];
+        if (y - y0).abs() > 1.0 {
+            let _ = write!(
+                svg,
+                "<line x1=\"{x0:.1}\" y1=\"{y0:.1}\" x2=\"{left:.1}\" y2=\"{y:.1}\" stroke=\"{color}\" stroke-width=\".6\"/>"
+            );
+        }
+        let _ = write!(
+            svg,
+            "<text x=\"{:.1}\" y=\"{:.1}\" style=\"fill:{color}\">{}</text>",
+            left + 1.0,
+            y + 4.0,
+            escape(&point.label),
+        );
+    }
 }
 
 fn histograms(rungs: &[Row<'_>]) -> String {

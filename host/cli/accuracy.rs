@@ -5,26 +5,41 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use serde::Serialize;
-use spherule_kernel::Rung;
+use spherule_kernel::{Ray, Rung, Sphere};
 
-use super::args::AccuracyArguments;
+use super::args::{AccuracyArguments, Subject};
 use super::{note, print};
 use crate::accuracy::canary::Canary;
 use crate::accuracy::families::Family;
+use crate::accuracy::frames::{self, Frame};
 use crate::accuracy::measure::{Escalation, Measured, intersect_all, judge, self_hits};
 use crate::accuracy::price::{self, Price};
-use crate::accuracy::report;
+use crate::accuracy::{report, scene_rays};
 use crate::device::Device;
 use crate::error::{Error, Result};
+use crate::scene::Scene;
 
 /// Everything that was measured; the JSON output is this.
 #[derive(Debug, Serialize)]
 pub(super) struct Report {
     device: String,
+    /// As asked for; each family says how many it had.
     rays_a_family: u32,
     seed: u64,
     refused: Vec<(&'static str, String)>,
     families: Vec<FamilyReport>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    frames: Option<FramesReport>,
+}
+
+/// Whole frames of a scene file.
+#[derive(Debug, Serialize)]
+struct FramesReport {
+    scene: String,
+    spheres: usize,
+    width: u32,
+    height: u32,
+    rungs: Vec<Frame>,
 }
 
 #[derive(Debug, Serialize)]
@@ -59,27 +74,31 @@ pub(super) fn run(arguments: &AccuracyArguments) -> Result<ExitCode> {
         }
     }
     let mut families = Vec::new();
-    for family in Family::ALL {
-        if arguments.scene.is_some_and(|only| only != family) {
-            continue;
-        }
-        let samples = family.sample(SEED, arguments.rays as usize);
-        let prices = price::measure(&device, &rungs, &samples)?;
-        let mut reports = Vec::new();
-        for (rung, price) in rungs.iter().zip(prices) {
-            let answers = intersect_all(&device, *rung, &samples)?;
-            reports.push(RungReport {
-                rung: rung.name(),
-                price,
-                measured: judge(&samples, &answers),
-                self_hits: self_hits(&device, *rung, &samples, &answers)?,
+    let mut frames = None;
+    match &arguments.scene {
+        Some(Subject::Scene(path)) => {
+            let mut scene = Scene::load(path)?;
+            if let Some(size) = arguments.size {
+                (scene.width, scene.height) = (size.width, size.height);
+            }
+            let samples = scene_rays::sample(&scene, SEED, arguments.rays as usize)?;
+            families.push(measure(&device, &rungs, "scene", &samples)?);
+            frames = Some(FramesReport {
+                scene: path.display().to_string(),
+                spheres: scene.world.spheres.len(),
+                width: scene.width,
+                height: scene.height,
+                rungs: frames::measure(&device, &rungs, &scene)?,
             });
         }
-        families.push(FamilyReport {
-            family: family.name(),
-            escalation: Escalation::of(&samples),
-            rungs: reports,
-        });
+        only => {
+            for family in Family::ALL {
+                if !matches!(only, Some(Subject::Family(only)) if *only != family) {
+                    let samples = family.sample(SEED, arguments.rays as usize);
+                    families.push(measure(&device, &rungs, family.name(), &samples)?);
+                }
+            }
+        }
     }
     let report = Report {
         device: device.name(),
@@ -87,6 +106,7 @@ pub(super) fn run(arguments: &AccuracyArguments) -> Result<ExitCode> {
         seed: SEED,
         refused,
         families,
+        frames,
     };
     if let Some(path) = &arguments.json {
         let text = serde_json::to_string_pretty(&report).unwrap_or_default() + "\n";
@@ -101,6 +121,31 @@ pub(super) fn run(arguments: &AccuracyArguments) -> Result<ExitCode> {
     }
     print(&table(&report))?;
     Ok(ExitCode::SUCCESS)
+}
+
+/// Everything about one family of rays.
+fn measure(
+    device: &Device,
+    rungs: &[Rung],
+    family: &'static str,
+    samples: &[(Ray, Sphere)],
+) -> Result<FamilyReport> {
+    let prices = price::measure(device, rungs, samples)?;
+    let mut reports = Vec::new();
+    for (rung, price) in rungs.iter().zip(prices) {
+        let answers = intersect_all(device, *rung, samples)?;
+        reports.push(RungReport {
+            rung: rung.name(),
+            price,
+            measured: judge(samples, &answers),
+            self_hits: self_hits(device, *rung, samples, &answers)?,
+        });
+    }
+    Ok(FamilyReport {
+        family,
+        escalation: Escalation::of(samples),
+        rungs: reports,
+    })
 }
 
 fn write(path: &Path, text: &str) -> Result<()> {
@@ -163,10 +208,51 @@ fn table(report: &Report) -> String {
     for (rung, why) in &report.refused {
         let _ = writeln!(text, "{rung} is refused here: {why}");
     }
+    if let Some(frames) = &report.frames {
+        text.push_str(&frames_table(frames));
+    }
     text.push_str(
         "ulp: error of t in units in the last place, over the hits. false, missed: hits reported that are none, hits\n\
          not found. margin: the largest |Δ| / (a r²) on the wrong side of a silhouette. self: rays that leave a hit\n\
          outwards and hit its sphere again. normal°: the largest error of the normal.\n",
+    );
+    text
+}
+
+fn frames_table(frames: &FramesReport) -> String {
+    let mut text = format!(
+        "{}: {} spheres, {} × {} pixels\n\n{:12} {:>18} {:>9} {:>18} {:>9}\n",
+        frames.scene,
+        frames.spheres,
+        frames.width,
+        frames.height,
+        "rung",
+        "ms a frame",
+        "× robust",
+        "pixels differ",
+        "ꟻLIP",
+    );
+    let robust = frames
+        .rungs
+        .iter()
+        .find(|frame| frame.rung == Rung::Robust.name())
+        .map_or(f64::NAN, |frame| frame.milliseconds);
+    for frame in &frames.rungs {
+        // Writing to a String cannot fail.
+        let _ = writeln!(
+            text,
+            "{:12} {:>9.3} ± {:<6.3} {:>9.2} {:>8} {:>7.3} % {:>9.6}",
+            frame.rung,
+            frame.milliseconds,
+            0.5 * (frame.slowest - frame.fastest),
+            frame.milliseconds / robust,
+            frame.differing,
+            100.0 * frame.differing as f64 / frame.pixels.max(1) as f64,
+            frame.flip,
+        );
+    }
+    text.push_str(
+        "against the CPU's image on certified: pixels off by more than two 255ths, or hit where it misses.\n\n",
     );
     text
 }
@@ -202,6 +288,10 @@ fn page(report: &Report) -> String {
         &report.device,
         report.rays_a_family,
         &families,
+        report
+            .frames
+            .as_ref()
+            .map(|frames| (frames.scene.as_str(), frames.rungs.as_slice())),
         &table(report),
     )
 }

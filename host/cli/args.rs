@@ -108,9 +108,14 @@ pub(super) struct AccuracyArguments {
     #[arg(long, value_name = "N", default_value_t = 200_000, value_parser = clap::value_parser!(u32).range(1000..=100_000_000))]
     pub(super) rays: u32,
 
-    /// Measure this family only: generic, far, ground, tangent, surface or inside
-    #[arg(long, value_name = "FAMILY", value_parser = family)]
-    pub(super) scene: Option<Family>,
+    /// Measure this family only (generic, far, ground, tangent, surface or inside), or the rays and
+    /// the frames of a scene file
+    #[arg(long, value_name = "FAMILY|FILE", value_parser = subject)]
+    pub(super) scene: Option<Subject>,
+
+    /// The size of a scene file's frames in pixels [default: the scene's]
+    #[arg(long, value_name = "WIDTHxHEIGHT", requires = "scene")]
+    pub(super) size: Option<Size>,
 
     /// Write a report to look at: one HTML page with its plots in it
     #[arg(short, long, value_name = "REPORT.html")]
@@ -121,14 +126,26 @@ pub(super) struct AccuracyArguments {
     pub(super) json: Option<PathBuf>,
 }
 
-fn family(text: &str) -> Result<Family, String> {
-    Family::ALL
-        .into_iter()
-        .find(|family| family.name() == text)
-        .ok_or_else(|| {
+/// What `accuracy` measures.
+#[derive(Clone, Debug)]
+pub(super) enum Subject {
+    Family(Family),
+    Scene(PathBuf),
+}
+
+fn subject(text: &str) -> Result<Subject, String> {
+    let family = Family::ALL.into_iter().find(|family| family.name() == text);
+    match family {
+        Some(family) => Ok(Subject::Family(family)),
+        None if text.contains('.') => Ok(Subject::Scene(text.into())),
+        None => {
             let names: Vec<&str> = Family::ALL.iter().map(|family| family.name()).collect();
-            format!("give one of {}", names.join(", "))
-        })
+            Err(format!(
+                "give one of {}, or a scene file (.toml, .pdb, .ent or .xyz)",
+                names.join(", ")
+            ))
+        }
+    }
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]

@@ -9,7 +9,8 @@ use spherule_kernel::Rung;
 use super::args::CheckArguments;
 use super::print;
 use crate::accuracy::canary::{Canary, Share};
-use crate::accuracy::cases::{Verdict, catalogue, world_cases};
+use crate::accuracy::cases::{Verdict, catalogue};
+use crate::accuracy::scene_cases::SCENE_CASES;
 use crate::device::Device;
 use crate::error::Result;
 
@@ -20,7 +21,6 @@ struct Report {
     canary: Canary,
     refused: Vec<(&'static str, String)>,
     cases: Vec<CaseReport>,
-    worlds: Vec<WorldReport>,
     promises_kept: bool,
 }
 
@@ -30,13 +30,6 @@ struct CaseReport {
     name: &'static str,
     /// A verdict for each rung that was not refused.
     rungs: Vec<(&'static str, Verdict)>,
-}
-
-#[derive(Debug, Serialize)]
-struct WorldReport {
-    number: u8,
-    name: &'static str,
-    wrong: Option<String>,
 }
 
 pub(super) fn run(arguments: &CheckArguments) -> Result<ExitCode> {
@@ -60,30 +53,29 @@ fn report(device: &Device, why: String) -> Result<Report> {
     let objections = Rung::ALL.map(|rung| (rung, canary.objection(rung)));
     let mut cases = Vec::new();
     let mut promises_kept = true;
-    for case in catalogue() {
+    let mut judge = |number, name, verdict: &dyn Fn(Rung) -> Result<Verdict>| -> Result<()> {
         let mut rungs = Vec::new();
         for (rung, objection) in &objections {
             if objection.is_none() {
-                let verdict = case.judge(device, *rung)?;
+                let verdict = verdict(*rung)?;
                 promises_kept &= !verdict.is_broken();
                 rungs.push((rung.name(), verdict));
             }
         }
         cases.push(CaseReport {
-            number: case.number,
-            name: case.name,
-            rungs,
-        });
-    }
-    let worlds: Vec<WorldReport> = world_cases()
-        .into_iter()
-        .map(|(number, name, wrong)| WorldReport {
             number,
             name,
-            wrong,
-        })
-        .collect();
-    promises_kept &= worlds.iter().all(|world| world.wrong.is_none());
+            rungs,
+        });
+        Ok(())
+    };
+    for case in catalogue() {
+        judge(case.number, case.name, &|rung| case.judge(device, rung))?;
+    }
+    for case in SCENE_CASES {
+        judge(case.number, case.name, &|rung| case.judge(device, rung))?;
+    }
+    cases.sort_by_key(|case| case.number);
     Ok(Report {
         device: device.name(),
         why,
@@ -93,7 +85,6 @@ fn report(device: &Device, why: String) -> Result<Report> {
             .filter_map(|(rung, objection)| objection.map(|why| (rung.name(), why)))
             .collect(),
         cases,
-        worlds,
         promises_kept,
     })
 }
@@ -139,14 +130,14 @@ fn table(report: &Report) -> String {
         text,
         "\nThe hard cases: ✓ right, · wrong and not promised, ✗ a broken promise\n"
     );
-    let _ = write!(text, "{:>4} {:52}", "", "");
+    let _ = write!(text, "{:>4} {:55}", "", "");
     for rung in Rung::ALL {
         let _ = write!(text, " {:>11}", rung.name());
     }
     text.push('\n');
     let mut broken = Vec::new();
     for case in &report.cases {
-        let _ = write!(text, "{:>4} {:52}", case.number, case.name);
+        let _ = write!(text, "{:>4} {:55}", case.number, case.name);
         for rung in Rung::ALL {
             let found = case.rungs.iter().find(|(name, _)| *name == rung.name());
             let mark = match found {
@@ -166,13 +157,6 @@ fn table(report: &Report) -> String {
             let _ = write!(text, " {mark:>11}");
         }
         text.push('\n');
-    }
-    for world in &report.worlds {
-        let mark = if world.wrong.is_none() { "✓" } else { "✗" };
-        let _ = writeln!(text, "{:>4} {:52} {mark:>23}", world.number, world.name);
-        if let Some(why) = &world.wrong {
-            broken.push(format!("{} {}: {why}", world.number, world.name));
-        }
     }
     text.push('\n');
     if broken.is_empty() {

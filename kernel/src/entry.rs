@@ -11,9 +11,11 @@ use crate::canary::{Operands, Outcome, sing};
 #[cfg(any(not(target_arch = "spirv"), feature = "f64"))]
 use crate::canary::{WideOutcome, sing_wide};
 use crate::film::render_pixel;
-use crate::nearest::nearest_hit_in;
+use crate::nearest::{is_occluded, nearest_hit_in};
+use crate::optics::{Fresnel, Incidence};
 use crate::precision::intersect;
 use crate::shading::shade;
+use crate::walk::{Walk, walk_inside};
 use crate::{Hit, Launch, Material, Pixel, Ray, Sphere, Surface, layout};
 
 /// Renders one launch: a tile of the image against a run of the spheres.
@@ -61,6 +63,21 @@ pub fn trace_rays(
     }
 }
 
+/// Writes 1 for each ray that any sphere occludes, 0 for the others.
+#[spirv(compute(threads(64), entry_point_name = "occlude_rays"))]
+pub fn occlude_rays(
+    #[spirv(global_invocation_id)] id: UVec3,
+    #[spirv(spec_constant(id = 1, default = 1))] rung: u32,
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 0)] rays: &[Ray],
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 1)] spheres: &[Sphere],
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 2)] occluded: &mut [u32],
+) {
+    let index = id.x as usize;
+    if index < rays.len() && index < occluded.len() {
+        occluded[index] = u32::from(is_occluded(rung, &rays[index], spheres));
+    }
+}
+
 /// Intersects ray i with sphere i and nothing else; writes the parameter of the hit.
 #[spirv(compute(threads(64), entry_point_name = "intersect_pairs"))]
 pub fn intersect_pairs(
@@ -76,8 +93,8 @@ pub fn intersect_pairs(
     }
 }
 
-/// Computes the surface at parameter i of ray i on sphere i; writes point and normal, two
-/// vectors an element.
+/// Computes the surface at parameter i of ray i on sphere i; writes point and error, and normal:
+/// two vectors an element.
 #[spirv(compute(threads(64), entry_point_name = "find_surfaces"))]
 pub fn find_surfaces(
     #[spirv(global_invocation_id)] id: UVec3,
@@ -93,8 +110,37 @@ pub fn find_surfaces(
         && 2 * index + 1 < surfaces.len()
     {
         let surface = Surface::at(&rays[index], parameters[index], spheres[index]);
-        surfaces[2 * index] = surface.point.extend(1.0);
+        surfaces[2 * index] = surface.point.extend(surface.error);
         surfaces[2 * index + 1] = surface.normal.extend(0.0);
+    }
+}
+
+/// Computes what becomes of light at each boundary.
+#[spirv(compute(threads(64), entry_point_name = "cross_boundaries"))]
+pub fn cross_boundaries(
+    #[spirv(global_invocation_id)] id: UVec3,
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 0)] incidences: &[Incidence],
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 1)] outcomes: &mut [Fresnel],
+) {
+    let index = id.x as usize;
+    if index < incidences.len() && index < outcomes.len() {
+        outcomes[index] = incidences[index].fresnel();
+    }
+}
+
+/// Lets ray i into glass sphere i of refractive index i and reflects it there a thousand times.
+#[spirv(compute(threads(64), entry_point_name = "walk_inside_spheres"))]
+pub fn walk_inside_spheres(
+    #[spirv(global_invocation_id)] id: UVec3,
+    #[spirv(spec_constant(id = 1, default = 1))] rung: u32,
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 0)] rays: &[Ray],
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 1)] spheres: &[Sphere],
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 2)] indices: &[f32],
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 3)] walks: &mut [Walk],
+) {
+    let index = id.x as usize;
+    if index < rays.len() && index < spheres.len() && index < indices.len() && index < walks.len() {
+        walks[index] = walk_inside(rung, &rays[index], spheres[index], indices[index], 1000);
     }
 }
 

@@ -2,6 +2,8 @@
 //! the GPU and on the CPU, so that the two can be compared.
 
 use crate::canary::{Operands, Outcome, WideOutcome};
+use crate::optics::{Fresnel, Incidence};
+use crate::walk::Walk;
 use crate::{Camera, Hit, Launch, Material, Pixel, Ray, Sphere};
 use core::mem::offset_of;
 
@@ -69,6 +71,17 @@ layouts! {
     "Outcome.root" = offset_of!(Outcome, root);
     "Outcome.equals_itself" = offset_of!(Outcome, equals_itself);
     "Outcome.small_product" = offset_of!(Outcome, small_product);
+    "size of Incidence" = size_of::<Incidence>();
+    "Incidence.cosine" = offset_of!(Incidence, cosine);
+    "Incidence.eta" = offset_of!(Incidence, eta);
+    "size of Fresnel" = size_of::<Fresnel>();
+    "Fresnel.reflectance" = offset_of!(Fresnel, reflectance);
+    "Fresnel.cosine_transmitted" = offset_of!(Fresnel, cosine_transmitted);
+    "size of Walk" = size_of::<Walk>();
+    "Walk.bounces" = offset_of!(Walk, bounces);
+    "Walk.astray" = offset_of!(Walk, astray);
+    "Walk.is_out" = offset_of!(Walk, is_out);
+    "Walk.cosine" = offset_of!(Walk, cosine);
     "size of WideOutcome" = size_of::<WideOutcome>();
     "WideOutcome.sum" = offset_of!(WideOutcome, sum);
     "WideOutcome.product" = offset_of!(WideOutcome, product);

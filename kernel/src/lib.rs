@@ -13,13 +13,15 @@
 //! | [`hit`] | [`Hit`]: how far along the ray, and which sphere |
 //! | [`arithmetic`] | floats whose rounding errors are kept |
 //! | [`precision`] | the ladder: ways to intersect a ray with a sphere |
-//! | [`nearest`] | the nearest hit of a ray among a slice of spheres |
+//! | [`nearest`] | the nearest hit of a ray among a slice of spheres, and whether there is any |
 //! | [`surface`] | the point and the normal at a hit |
 //! | [`camera`] | [`Camera`]: from a pixel to a ray |
 //! | [`material`] | [`Material`]: what a sphere looks like |
+//! | [`optics`] | refraction and reflection between transparent media |
 //! | [`shading`] | [`Shading`]: from a hit to a colour |
 //! | [`film`] | [`Launch`] and [`Pixel`]: what a launch is told, what it writes |
 //! | [`canary`] | what a device does to the arithmetic that the ladder needs |
+//! | [`walk`] | a light path inside a glass sphere, for the hard cases |
 //! | [`layout`] | sizes and offsets of the shared types, as numbers |
 //! | `entry` | the `#[spirv]` entry points, behind the feature `entry-points` |
 //! | `spirv` | the committed modules, for the host only |
@@ -44,6 +46,7 @@ pub mod hit;
 pub mod layout;
 pub mod material;
 pub mod nearest;
+pub mod optics;
 pub mod precision;
 pub mod ray;
 pub mod shading;
@@ -51,6 +54,7 @@ pub mod sphere;
 #[cfg(not(target_arch = "spirv"))]
 pub mod spirv;
 pub mod surface;
+pub mod walk;
 
 pub use camera::Camera;
 pub use film::{Launch, Pixel};

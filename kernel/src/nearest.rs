@@ -1,4 +1,4 @@
-//! The nearest hit among many spheres, by testing every one. Runs on the GPU and on the CPU.
+//! The nearest hit among many spheres, and whether there is any, by testing every one. Runs on the GPU and on the CPU.
 
 use spirv_std::arch::IndexUnchecked;
 
@@ -51,4 +51,20 @@ pub fn nearest_hit_in(rung: u32, ray: &Ray, spheres: &[Sphere], first: u32, coun
         index += 1;
     }
     hit
+}
+
+/// Whether `ray` hits any of `spheres` on this rung: exactly where [`nearest_hit_in`] finds
+/// something, because both ask the same function of the same interval.
+#[inline]
+#[must_use]
+pub fn is_occluded(rung: u32, ray: &Ray, spheres: &[Sphere]) -> bool {
+    let mut index = 0;
+    let mut occluded = false;
+    while (index < spheres.len()) & !occluded {
+        // SAFETY: `index` is below the length of the slice.
+        let sphere = unsafe { *spheres.index_unchecked(index) };
+        occluded = intersect(rung, sphere, ray) < ray.t_max;
+        index += 1;
+    }
+    occluded
 }

@@ -43,6 +43,14 @@ impl DoubleSingle {
         Self { high, low }
     }
 
+    /// `a + b`, exactly.
+    #[inline]
+    #[must_use]
+    pub fn total(a: f32, b: f32) -> Self {
+        let (high, low) = two_sum(a, b);
+        Self { high, low }
+    }
+
     /// `a · b`, exactly.
     #[inline]
     #[must_use]

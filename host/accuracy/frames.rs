@@ -1,0 +1,78 @@
+//! What each rung costs and gets right in a whole frame of a scene.
+
+use serde::Serialize;
+use spherule_kernel::{Rung, Shading};
+
+use crate::device::Device;
+use crate::error::Result;
+use crate::film::compare::{Comparison, Tolerance};
+use crate::film::flip::mean_flip;
+use crate::render::{QUIET, Settings, render};
+use crate::scene::Scene;
+
+/// How often each rung renders the frame; the rungs take turns.
+const ROUNDS: usize = 7;
+
+/// A frame on one rung.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Frame {
+    /// The rung.
+    pub rung: &'static str,
+    /// The median time of tracing, in milliseconds: the device's own where it can be measured.
+    pub milliseconds: f64,
+    /// The fastest run.
+    pub fastest: f64,
+    /// The slowest run.
+    pub slowest: f64,
+    /// Pixels that differ from the reference by more than two 255ths, or hit where it misses.
+    pub differing: usize,
+    /// How many pixels there are.
+    pub pixels: usize,
+    /// The mean ꟻLIP against the reference.
+    pub flip: f64,
+}
+
+/// Renders `scene` on `device` on each of `rungs`; the reference is what the CPU renders on the
+/// highest rung.
+///
+/// # Errors
+///
+/// As [`render`].
+pub fn measure(device: &Device, rungs: &[Rung], scene: &Scene) -> Result<Vec<Frame>> {
+    let settings = |rung| Settings {
+        shading: Shading::Lit,
+        rung,
+    };
+    let reference = render(scene, settings(Rung::Certified), &Device::Cpu, QUIET)?.image;
+    let mut times = vec![Vec::new(); rungs.len()];
+    let mut images = Vec::new();
+    for round in 0..=ROUNDS {
+        for (index, rung) in rungs.iter().enumerate() {
+            let rendered = render(scene, settings(*rung), device, QUIET)?;
+            // The first round warms up.
+            if round == 0 {
+                images.push(rendered.image);
+            } else {
+                times[index].push(rendered.timings.trace.as_secs_f64() * 1e3);
+            }
+        }
+    }
+    Ok(rungs
+        .iter()
+        .zip(images)
+        .zip(times)
+        .map(|((rung, image), mut times)| {
+            times.sort_by(f64::total_cmp);
+            let compared = Comparison::of(&image, &reference, Tolerance::default());
+            Frame {
+                rung: rung.name(),
+                milliseconds: times[ROUNDS / 2],
+                fastest: times[0],
+                slowest: times[ROUNDS - 1],
+                differing: compared.map_or(0, |compared| compared.differing),
+                pixels: image.pixels().len(),
+                flip: mean_flip(&reference, &image).unwrap_or(f64::NAN),
+            }
+        })
+        .collect())
+}
