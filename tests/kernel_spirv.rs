@@ -59,6 +59,7 @@ fn the_modules_have_the_entry_points_that_the_host_calls() {
             "occlude_rays",
             "render",
             "shade_hits",
+            "trace_paths",
             "trace_rays",
             "walk_inside_spheres",
         ];
@@ -148,7 +149,13 @@ fn check_offsets(bytes: &[u8]) {
         fields("Fresnel"),
         fields("Walk"),
         with_padding(&fields("Camera"), 12),
-        with_padding(&fields("Material"), 12),
+        fields("Material"),
+        // Their padding is at the end.
+        [fields("Light"), vec![44]].concat(),
+        [fields("Sky"), vec![72]].concat(),
+        [fields("Fog"), vec![36, 40]].concat(),
+        fields("PathLaunch"),
+        fields("Accumulator"),
     ];
     if Module::from_bytes("committed", bytes).is_ok_and(|module| module.needs_f64()) {
         expected.push(fields("WideOutcome"));

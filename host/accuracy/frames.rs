@@ -1,12 +1,13 @@
 //! What each rung costs and gets right in a whole frame of a scene.
 
 use serde::Serialize;
-use spherule_kernel::{Rung, Shading};
+use spherule_kernel::{Effects, Rung, Shading};
 
 use crate::device::Device;
 use crate::error::Result;
 use crate::film::compare::{Comparison, Tolerance};
 use crate::film::flip::mean_flip;
+use crate::render::paths::EffectChoice;
 use crate::render::{QUIET, Settings, render};
 use crate::scene::Scene;
 
@@ -42,6 +43,9 @@ pub fn measure(device: &Device, rungs: &[Rung], scene: &Scene) -> Result<Vec<Fra
     let settings = |rung| Settings {
         shading: Shading::Lit,
         rung,
+        // One ray a pixel, whatever the scene calls for.
+        effects: EffectChoice::Only(Effects::NONE),
+        ..Settings::default()
     };
     let reference = render(scene, settings(Rung::Certified), &Device::Cpu, QUIET)?.image;
     let mut times = vec![Vec::new(); rungs.len()];

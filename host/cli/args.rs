@@ -4,13 +4,14 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use spherule_kernel::{Rung, Shading};
+use spherule_kernel::{Effects, Rung, Shading};
 
 use crate::accuracy::choose::DEFAULT_TOLERANCE;
 use crate::accuracy::families::Family;
 use crate::device::DeviceChoice;
 use crate::film::file::Format;
-use crate::scene::MAX_IMAGE_SIDE;
+use crate::render::paths::EffectChoice;
+use crate::scene::{MAX_IMAGE_SIDE, MAX_SAMPLES};
 
 /// A ray tracer for spheres, whose kernel is Rust on the GPU and on the CPU.
 #[derive(Debug, Parser)]
@@ -65,6 +66,31 @@ pub(super) struct RenderArguments {
     /// What auto precision may be off by, in pixels
     #[arg(long, value_name = "PX", default_value_t = DEFAULT_TOLERANCE, value_parser = tolerance)]
     pub(super) tolerance: f64,
+
+    /// Samples a pixel, for scenes with effects [default: the scene's]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_SAMPLES)))]
+    pub(super) samples: Option<u32>,
+
+    /// How often light is reflected or scattered on its way, at most [default: the scene's, or 8]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=10_000))]
+    pub(super) max_bounces: Option<u32>,
+
+    /// Another seed is another image of the same expectation [default: the scene's, or 0]
+    #[arg(long, value_name = "N")]
+    pub(super) seed: Option<u32>,
+
+    /// Which effects the pipeline holds: auto (those that the scene calls for), all (the others stay idle), or a list of
+    /// names as `spherule explain` prints them (the scene's other effects are left out)
+    #[arg(long, value_name = "auto|all|LIST", default_value = "auto", value_parser = effects)]
+    pub(super) effects: EffectChoice,
+
+    /// Take no more samples after this many seconds of tracing
+    #[arg(long, value_name = "SECONDS", value_parser = positive)]
+    pub(super) time_limit: Option<f64>,
+
+    /// Take no more samples when the noise is this low: the pixels' standard error over the mean luminance, 0.01 for 1 %
+    #[arg(long, value_name = "TARGET", value_parser = positive)]
+    pub(super) noise: Option<f64>,
 
     /// Render on the GPU and on the CPU and compare: fail if more than 0.1 % of the pixels differ by more than 2/255
     #[arg(long)]
@@ -199,6 +225,40 @@ impl Precision {
             Self::Certified => Some(Rung::Certified),
         }
     }
+}
+
+fn effects(text: &str) -> Result<EffectChoice, String> {
+    match text {
+        "auto" => return Ok(EffectChoice::Auto),
+        "all" => return Ok(EffectChoice::All),
+        "none" => return Ok(EffectChoice::Only(Effects::NONE)),
+        _ => {}
+    }
+    let mut set = Effects::NONE;
+    for name in text.split(',') {
+        let found = Effects::NAMED
+            .iter()
+            .find(|(_, known)| *known == name.trim());
+        match found {
+            Some((effect, _)) => set = set.and(*effect),
+            None => {
+                let known: Vec<&str> = Effects::NAMED.iter().map(|(_, name)| *name).collect();
+                return Err(format!(
+                    "there is no effect `{}`: give auto, all, none, or some of {}, separated by commas",
+                    name.trim(),
+                    known.join(", ")
+                ));
+            }
+        }
+    }
+    Ok(EffectChoice::Only(set))
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    text.parse()
+        .ok()
+        .filter(|number: &f64| *number > 0.0 && *number <= 1e9)
+        .ok_or_else(|| "give a number above zero".into())
 }
 
 fn tolerance(text: &str) -> Result<f64, String> {

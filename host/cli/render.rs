@@ -15,6 +15,7 @@ use crate::device::{Device, DeviceChoice};
 use crate::error::{Error, Result, SceneError};
 use crate::film::Image;
 use crate::film::compare::{Comparison, Tolerance};
+use crate::render::paths::{Reached, StoppedBy};
 use crate::render::{Rendered, Settings, render};
 use crate::scene::Scene;
 
@@ -28,6 +29,11 @@ struct Stats {
     width: u32,
     height: u32,
     rays: u64,
+    /// The effects that the image shows.
+    effects: Vec<&'static str>,
+    /// Samples taken, the noise that was reached, and what ended the render.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    sampling: Option<Reached>,
     seconds: Seconds,
     mrays_per_s: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -40,6 +46,7 @@ struct Stats {
 struct Seconds {
     load: f64,
     setup: f64,
+    compile: f64,
     trace: f64,
     readback: f64,
     encode: f64,
@@ -74,6 +81,10 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<ExitCode> {
     if let Some(size) = arguments.size {
         (scene.width, scene.height) = (size.width, size.height);
     }
+    let sampling = &mut scene.sampling;
+    sampling.samples = arguments.samples.or(sampling.samples);
+    sampling.max_bounces = arguments.max_bounces.unwrap_or(sampling.max_bounces);
+    sampling.seed = arguments.seed.unwrap_or(sampling.seed);
     let load = started.elapsed();
 
     let opening = Instant::now();
@@ -91,6 +102,9 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<ExitCode> {
     let settings = Settings {
         shading: arguments.shade.into(),
         rung,
+        effects: arguments.effects,
+        time_limit: arguments.time_limit.map(Duration::from_secs_f64),
+        noise: arguments.noise,
     };
 
     let rendered = match with_bar(arguments, &scene, settings, &device) {
@@ -112,8 +126,21 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<ExitCode> {
             "depth from {near} (white) to {far} (black) scene units"
         ));
     }
+    let samples = match rendered.reached {
+        None => String::new(),
+        Some(reached) => format!(
+            ", {} samples a pixel{}, noise {:.2} %",
+            reached.samples,
+            match reached.stopped_by {
+                StoppedBy::Samples => "",
+                StoppedBy::TimeLimit => " (the time was up)",
+                StoppedBy::Noise => " (the noise was low enough)",
+            },
+            100.0 * reached.noise,
+        ),
+    };
     say(&format!(
-        "wrote {}: {} × {} pixels, {} {}, {}",
+        "wrote {}: {} × {} pixels{samples}, {} {}, {}",
         output.display(),
         image.width(),
         image.height(),
@@ -131,7 +158,9 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<ExitCode> {
         .transpose()?;
     let passed = check.as_ref().is_none_or(|check| check.passed);
     if let Some(path) = &arguments.stats {
-        let rays = u64::from(scene.width) * u64::from(scene.height);
+        // Camera rays; light paths go on from there.
+        let samples = rendered.reached.map_or(1, |reached| reached.samples);
+        let rays = u64::from(scene.width) * u64::from(scene.height) * u64::from(samples);
         let trace = rendered.timings.trace.as_secs_f64();
         write_stats(
             path,
@@ -143,8 +172,19 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<ExitCode> {
                 width: scene.width,
                 height: scene.height,
                 rays,
+                effects: scene
+                    .called_effects()
+                    .iter()
+                    .filter(|called| {
+                        rendered.reached.is_some()
+                            && settings.effects.shown(called.effect).any(called.effect)
+                    })
+                    .map(|called| called.name)
+                    .collect(),
+                sampling: rendered.reached,
                 seconds: Seconds {
                     load: load.as_secs_f64(),
+                    compile: rendered.timings.compile.as_secs_f64(),
                     setup: (opening + rendered.timings.setup).as_secs_f64(),
                     trace,
                     readback: rendered.timings.readback.as_secs_f64(),

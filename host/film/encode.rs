@@ -1,9 +1,13 @@
 //! From linear colours and measurements to 8-bit colours.
 
+use glam::Vec3;
 use rayon::prelude::*;
+use spherule_kernel::integrate::luminance;
 use spherule_kernel::{Pixel, Shading};
 
 use super::Image;
+use crate::scene::Develop;
+use crate::scene::surroundings::Tonemap;
 
 impl Image {
     /// The image as 8-bit red, green, blue, row by row.
@@ -30,6 +34,29 @@ impl Image {
         bytes
     }
 
+    /// The image as 8-bit red, green, blue and opacity, row by row, colours not premultiplied, as
+    /// PNG has it.
+    #[must_use]
+    pub fn to_rgba8(&self) -> Vec<u8> {
+        let encoder = Encoder::of(self);
+        let opaque = vec![1.0; self.pixels.len()];
+        let alpha = self.alpha().unwrap_or(&opaque);
+        let byte = |value: f32| (value.clamp(0.0, 1.0) * 255.0 + 0.5) as u8;
+        self.pixels
+            .par_iter()
+            .zip(alpha)
+            .flat_map_iter(|(pixel, alpha)| {
+                let straight = if *alpha > 0.0 {
+                    Pixel::new(pixel.color() / *alpha, pixel.depth())
+                } else {
+                    Pixel::new(Vec3::ZERO, pixel.depth())
+                };
+                let [r, g, b] = encoder.encode(&straight).map(byte);
+                [r, g, b, byte(*alpha)]
+            })
+            .collect()
+    }
+
     /// The nearest and the farthest distance that the image shows, in scene units; `None`
     /// unless it is a depth image that shows anything.
     #[must_use]
@@ -52,6 +79,7 @@ impl Image {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Encoder {
     shading: Shading,
+    develop: Develop,
     near: f32,
     far: f32,
 }
@@ -61,6 +89,7 @@ impl Encoder {
         let (near, far) = image.depth_range().unwrap_or((0.0, 0.0));
         Self {
             shading: image.shading,
+            develop: image.develop,
             near,
             far,
         }
@@ -92,7 +121,22 @@ impl Encoder {
             shading if shading.is_data() && pixel.is_hit() => {
                 color.map(|channel| channel.clamp(0.0, 1.0))
             }
+            Shading::Lit => develop(self.develop, pixel.color()).to_array().map(srgb),
             _ => color.map(srgb),
+        }
+    }
+}
+
+/// Exposes light, and bends what is beyond the screen's white as the curve says.
+fn develop(how: Develop, light: Vec3) -> Vec3 {
+    let light = light * how.exposure.exp2();
+    match how.tonemap {
+        Tonemap::Clamp => light,
+        Tonemap::Reinhard => light / (1.0 + luminance(light)),
+        Tonemap::Aces => {
+            let curve = |x: f32| (x * (2.51 * x + 0.03)) / (x * (2.43 * x + 0.59) + 0.14);
+            // The fit is of a curve with its own exposure.
+            (light * 0.6).map(curve)
         }
     }
 }

@@ -117,6 +117,15 @@ impl Image {
         writer: &mut (impl Write + Seek),
     ) -> image::ImageResult<()> {
         match format {
+            Format::Png if self.alpha().is_some() => {
+                PngEncoder::new_with_quality(writer, CompressionType::Fast, FilterType::Adaptive)
+                    .write_image(
+                        &self.to_rgba8(),
+                        self.width,
+                        self.height,
+                        ExtendedColorType::Rgba8,
+                    )
+            }
             Format::Png => {
                 PngEncoder::new_with_quality(writer, CompressionType::Fast, FilterType::Adaptive)
                     .write_image(
@@ -125,6 +134,21 @@ impl Image {
                         self.height,
                         ExtendedColorType::Rgb8,
                     )
+            }
+            // OpenEXR's colours are premultiplied, as ours.
+            Format::Exr if let Some(alpha) = self.alpha() => {
+                let floats: Vec<f32> = self
+                    .pixels
+                    .iter()
+                    .zip(alpha)
+                    .flat_map(|(pixel, alpha)| pixel.color().extend(*alpha).to_array())
+                    .collect();
+                OpenExrEncoder::new(writer).write_image(
+                    bytemuck::cast_slice(&floats),
+                    self.width,
+                    self.height,
+                    ExtendedColorType::Rgba32F,
+                )
             }
             Format::Exr => {
                 let floats: Vec<f32> = self

@@ -15,6 +15,7 @@ pub mod flip;
 use spherule_kernel::{Pixel, Shading};
 
 use crate::error::{Error, Result};
+use crate::scene::Develop;
 
 /// A rendered image: linear colours or measurements, row by row from the upper left.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,25 +24,29 @@ pub struct Image {
     height: u32,
     shading: Shading,
     pixels: Vec<Pixel>,
+    /// How opaque each pixel is, from 0 to 1; empty if all are. Colours are premultiplied.
+    alpha: Vec<f32>,
+    /// How light becomes 8-bit colours; linear images are left as they are.
+    pub develop: Develop,
 }
 
-/// Room for the pixels of an image.
+/// Room for what belongs to each pixel of an image.
 ///
 /// # Errors
 ///
 /// [`Error::OutOfMemory`] if the host has not that much.
-pub fn allocate(width: u32, height: u32) -> Result<Vec<Pixel>> {
+pub fn allocate<T: Clone + Default>(width: u32, height: u32) -> Result<Vec<T>> {
     let failed = || Error::OutOfMemory {
         device: "the host".into(),
         during: format!(
             "making room for {width} × {height} pixels, {:.1} GiB",
-            f64::from(width) * f64::from(height) * size_of::<Pixel>() as f64 / f64::from(1 << 30)
+            f64::from(width) * f64::from(height) * size_of::<T>() as f64 / f64::from(1 << 30)
         ),
     };
     let count = usize::try_from(u64::from(width) * u64::from(height)).map_err(|_| failed())?;
     let mut pixels = Vec::new();
     pixels.try_reserve_exact(count).map_err(|_| failed())?;
-    pixels.resize(count, Pixel::default());
+    pixels.resize(count, T::default());
     Ok(pixels)
 }
 
@@ -59,7 +64,26 @@ impl Image {
             height,
             shading,
             pixels,
+            alpha: Vec::new(),
+            develop: Develop::default(),
         }
+    }
+
+    /// Makes pixels let through what is behind the image: `alpha` says how opaque each is, from 0
+    /// to 1, and the colours are taken as premultiplied.
+    ///
+    /// # Panics
+    ///
+    /// If there is not one for each pixel.
+    pub fn set_alpha(&mut self, alpha: Vec<f32>) {
+        assert_eq!(alpha.len(), self.pixels.len());
+        self.alpha = alpha;
+    }
+
+    /// How opaque each pixel is; `None` if all are.
+    #[must_use]
+    pub fn alpha(&self) -> Option<&[f32]> {
+        (!self.alpha.is_empty()).then_some(&self.alpha)
     }
 
     /// Width in pixels.

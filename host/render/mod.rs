@@ -4,11 +4,13 @@
 //! | --- | --- |
 //! | [`cpu`] | the kernel's functions over bands of rows, on every thread |
 //! | [`gpu`] | the kernel's entry point over tiles, within a device's limits |
+//! | [`paths`] | light paths, for scenes that call for effects |
 //! | [`pace`] | how much work one launch gets |
 
 pub mod cpu;
 pub mod gpu;
 pub mod pace;
+pub mod paths;
 
 use std::time::{Duration, Instant};
 
@@ -18,14 +20,21 @@ use crate::device::Device;
 use crate::error::{Error, Result, SceneError};
 use crate::film::Image;
 use crate::scene::Scene;
+use paths::{EffectChoice, Reached};
 
 /// What is fixed before the kernel is compiled, on the GPU and on the CPU.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Settings {
     /// What the image shows of a hit.
     pub shading: Shading,
     /// How rays are intersected with spheres.
     pub rung: Rung,
+    /// Which effects the pipeline holds; only [`Shading::Lit`] shows any.
+    pub effects: EffectChoice,
+    /// Stops taking samples after this time of tracing.
+    pub time_limit: Option<Duration>,
+    /// Stops taking samples when [`Reached::noise`](paths::Reached::noise) is as low as this.
+    pub noise: Option<f64>,
 }
 
 impl From<Shading> for Settings {
@@ -50,6 +59,8 @@ pub struct Rendered {
     pub image: Image,
     /// What it took.
     pub timings: Timings,
+    /// How far it came, where there is more than one ray a pixel.
+    pub reached: Option<Reached>,
 }
 
 /// Where the time of a render went.
@@ -57,6 +68,8 @@ pub struct Rendered {
 pub struct Timings {
     /// Compiling the kernel and uploading the world; zero on the CPU.
     pub setup: Duration,
+    /// Of that, compiling the kernel for these effects and this rung.
+    pub compile: Duration,
     /// Tracing: the device's own time where it can be measured, else the host's.
     pub trace: Duration,
     /// Copying the image back; zero on the CPU.
@@ -87,6 +100,11 @@ pub fn render(
     progress: Progress<'_>,
 ) -> Result<Rendered> {
     let settings = settings.into();
+    let shown = settings.effects.shown(scene.effects());
+    let compiled = settings.effects.compiled(scene.effects());
+    if settings.shading == Shading::Lit && !compiled.and(shown).is_empty() {
+        return paths::render(scene, &settings, device, progress);
+    }
     let launch = whole_image(scene)?;
     match device {
         Device::Cpu => {
@@ -99,6 +117,7 @@ pub fn render(
             Ok(Rendered {
                 image: Image::new(scene.width, scene.height, settings.shading, pixels),
                 timings,
+                reached: None,
             })
         }
         Device::Gpu(gpu) => {
@@ -106,6 +125,7 @@ pub fn render(
             Ok(Rendered {
                 image: Image::new(scene.width, scene.height, settings.shading, pixels),
                 timings,
+                reached: None,
             })
         }
     }

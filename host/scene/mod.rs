@@ -4,10 +4,16 @@
 //! | --- | --- |
 //! | [`world`] | [`World`]: the spheres and their materials, in the device's own types |
 //! | [`view`] | [`View`]: where the camera is, given or framed around the world |
+//! | [`surroundings`] | light, sky, fog, lens: what there is besides spheres |
+//! | [`mod@effects`] | which effects a scene calls for, and by what |
 //! | [`toml_file`] | scenes written by a person |
 //! | [`molecule`] | molecules from PDB and XYZ files |
+//! | [`environment`] | images of the surroundings |
 
+pub mod effects;
+pub mod environment;
 pub mod molecule;
+pub mod surroundings;
 pub mod toml_file;
 pub mod view;
 pub mod world;
@@ -17,11 +23,15 @@ use std::path::Path;
 use glam::Vec3;
 
 use crate::error::{Error, Result, SceneError};
+pub use surroundings::{Develop, FogBall, Lens, PointLight, Sampling, Surroundings};
 pub use view::View;
 pub use world::World;
 
 /// The largest width or height of an image, in pixels.
 pub const MAX_IMAGE_SIDE: u32 = 65_536;
+
+/// The most samples a pixel: the count is kept in a 32-bit float.
+pub const MAX_SAMPLES: u32 = 1 << 24;
 
 /// The largest coordinate or radius, in scene units: the sum of three squares of twice this is
 /// still a 32-bit float.
@@ -40,6 +50,20 @@ pub struct Scene {
     pub height: u32,
     /// The colour of a ray that hits nothing, linear Rec. 709.
     pub background: Vec3,
+    /// Whether the image shows what is behind it where there is no sphere.
+    pub transparent: bool,
+    /// The camera's lens and shutter.
+    pub lens: Lens,
+    /// The light of the surroundings, instead of the background; `None` for none.
+    pub sky: Option<Surroundings>,
+    /// A medium that fills a ball.
+    pub fog: Option<FogBall>,
+    /// Points of light.
+    pub lights: Vec<PointLight>,
+    /// How many samples, how many bounces.
+    pub sampling: Sampling,
+    /// From light to the colours of an 8-bit image.
+    pub develop: Develop,
 }
 
 impl Scene {
@@ -58,6 +82,13 @@ impl Scene {
             width,
             height,
             background: Self::DEFAULT_BACKGROUND,
+            transparent: false,
+            lens: Lens::default(),
+            sky: None,
+            fog: None,
+            lights: Vec::new(),
+            sampling: Sampling::default(),
+            develop: Develop::default(),
         }
     }
 

@@ -5,11 +5,18 @@ use std::path::Path;
 
 use glam::Vec3;
 use serde::Deserialize;
+use spherule_kernel::fog::Fog;
 use spherule_kernel::{Material, Sphere};
 use toml::Spanned;
 
-use super::{MAX_IMAGE_SIDE, MAX_LENGTH, Scene, View, World, molecule, read_text};
+use super::surroundings::{FogBall, Lens, PointLight, Sun, Surroundings, Tonemap};
+use super::{
+    MAX_IMAGE_SIDE, MAX_LENGTH, MAX_SAMPLES, Scene, View, World, environment, molecule, read_text,
+};
 use crate::error::{Error, Place, Result, SceneError};
+
+/// The angle across the sun as it is seen from the Earth, in degrees.
+const DEFAULT_SUN_SIZE: f32 = 0.53;
 
 /// The file as written; every value keeps its span.
 #[derive(Deserialize)]
@@ -19,10 +26,14 @@ struct File {
     image: ImageTable,
     camera: Option<Spanned<CameraTable>>,
     #[serde(default)]
-    materials: BTreeMap<String, MaterialTable>,
+    materials: BTreeMap<String, Spanned<MaterialTable>>,
     #[serde(default, rename = "sphere")]
     spheres: Vec<Spanned<SphereTable>>,
     particles: Option<ParticlesTable>,
+    #[serde(default, rename = "light")]
+    lights: Vec<LightTable>,
+    sky: Option<Spanned<SkyTable>>,
+    fog: Option<Spanned<FogTable>>,
 }
 
 #[derive(Deserialize, Default)]
@@ -31,6 +42,21 @@ struct ImageTable {
     width: Option<Spanned<i64>>,
     height: Option<Spanned<i64>>,
     background: Option<Spanned<Vec<f64>>>,
+    transparent: Option<bool>,
+    samples: Option<Spanned<i64>>,
+    max_bounces: Option<Spanned<i64>>,
+    ambient_occlusion: Option<Spanned<f64>>,
+    seed: Option<Spanned<i64>>,
+    exposure: Option<Spanned<f64>>,
+    tonemap: Option<TonemapName>,
+}
+
+#[derive(Deserialize, Clone, Copy)]
+#[serde(rename_all = "lowercase")]
+enum TonemapName {
+    Clamp,
+    Reinhard,
+    Aces,
 }
 
 #[derive(Deserialize)]
@@ -40,19 +66,30 @@ struct CameraTable {
     target: Spanned<Vec<f64>>,
     up: Option<Spanned<Vec<f64>>>,
     vertical_fov: Option<Spanned<f64>>,
+    aperture: Option<Spanned<f64>>,
+    focus_distance: Option<Spanned<f64>>,
+    shutter: Option<Spanned<Vec<f64>>>,
 }
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct MaterialTable {
     kind: MaterialKind,
-    color: Spanned<Vec<f64>>,
+    color: Option<Spanned<Vec<f64>>>,
+    roughness: Option<Spanned<f64>>,
+    index: Option<Spanned<f64>>,
+    absorption: Option<Spanned<Vec<f64>>>,
+    thickness: Option<Spanned<f64>>,
+    strength: Option<Spanned<f64>>,
 }
 
-#[derive(Deserialize)]
+#[derive(Deserialize, Clone, Copy, PartialEq, Debug)]
 #[serde(rename_all = "lowercase")]
 enum MaterialKind {
     Diffuse,
+    Metal,
+    Glass,
+    Emissive,
 }
 
 #[derive(Deserialize)]
@@ -61,6 +98,37 @@ struct SphereTable {
     center: Spanned<Vec<f64>>,
     radius: Spanned<f64>,
     material: Option<Spanned<String>>,
+    velocity: Option<Spanned<Vec<f64>>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct LightTable {
+    position: Spanned<Vec<f64>>,
+    intensity: Spanned<Vec<f64>>,
+    radius: Option<Spanned<f64>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SkyTable {
+    horizon: Option<Spanned<Vec<f64>>>,
+    zenith: Option<Spanned<Vec<f64>>>,
+    sun_direction: Option<Spanned<Vec<f64>>>,
+    sun_size: Option<Spanned<f64>>,
+    sun_irradiance: Option<Spanned<Vec<f64>>>,
+    image: Option<Spanned<String>>,
+    strength: Option<Spanned<f64>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct FogTable {
+    extinction: Spanned<f64>,
+    albedo: Option<Spanned<Vec<f64>>>,
+    anisotropy: Option<Spanned<f64>>,
+    center: Option<Spanned<Vec<f64>>>,
+    radius: Option<Spanned<f64>>,
 }
 
 #[derive(Deserialize)]
@@ -102,11 +170,11 @@ pub fn parse(path: &Path, text: String) -> Result<Scene> {
 
 fn help_for_toml(message: &str) -> String {
     if message.contains("unknown field") {
-        "check the spelling; the README shows every key".into()
+        "check the spelling; docs/scenes.md lists every key".into()
     } else if message.contains("unknown variant") {
-        "materials are of kind \"diffuse\"".into()
+        "materials are of kind \"diffuse\", \"metal\", \"glass\" or \"emissive\"; a tonemap is \"clamp\", \"reinhard\" or \"aces\"".into()
     } else if message.contains("missing field") {
-        "add it; the README shows every key".into()
+        "add it; docs/scenes.md lists every key".into()
     } else {
         "the README shows a whole scene; tables are [name], spheres are [[sphere]], strings stand in quotes".into()
     }
@@ -132,23 +200,372 @@ impl Reader<'_> {
         }
         if let Some(camera) = &file.camera {
             scene.view = Some(self.view(camera)?);
+            scene.lens = self.lens(camera.get_ref())?;
+        }
+        self.image(&file.image, &mut scene)?;
+        for light in &file.lights {
+            self.light(light, &mut scene)?;
+        }
+        if let Some(sky) = &file.sky {
+            scene.sky = Some(self.sky(sky)?);
+        }
+        if let Some(fog) = &file.fog {
+            scene.fog = Some(self.fog(fog.get_ref())?);
         }
         Ok(scene)
+    }
+
+    fn image(&self, table: &ImageTable, scene: &mut Scene) -> Result<()> {
+        scene.transparent = table.transparent.unwrap_or(false);
+        if let Some(samples) = &table.samples {
+            scene.sampling.samples =
+                Some(self.whole("samples", samples, 1, i64::from(MAX_SAMPLES))?);
+        }
+        if let Some(bounces) = &table.max_bounces {
+            scene.sampling.max_bounces = self.whole("max_bounces", bounces, 0, 10_000)?;
+        }
+        if let Some(seed) = &table.seed {
+            scene.sampling.seed = self.whole("seed", seed, 0, i64::from(u32::MAX))?;
+        }
+        if let Some(distance) = &table.ambient_occlusion {
+            scene.sampling.ambient_occlusion = Some(self.number(
+                "ambient_occlusion",
+                distance,
+                f32::MIN_POSITIVE..=MAX_LENGTH,
+            )?);
+        }
+        if let Some(exposure) = &table.exposure {
+            scene.develop.exposure = self.number("exposure", exposure, -64.0..=64.0)?;
+        }
+        scene.develop.tonemap = match table.tonemap {
+            None | Some(TonemapName::Clamp) => Tonemap::Clamp,
+            Some(TonemapName::Reinhard) => Tonemap::Reinhard,
+            Some(TonemapName::Aces) => Tonemap::Aces,
+        };
+        Ok(())
+    }
+
+    fn lens(&self, camera: &CameraTable) -> Result<Lens> {
+        let mut lens = Lens::default();
+        if let Some(aperture) = &camera.aperture {
+            lens.aperture = self.number("aperture", aperture, 0.0..=MAX_LENGTH)?;
+        }
+        if let Some(distance) = &camera.focus_distance {
+            let distance =
+                self.number("focus_distance", distance, f32::MIN_POSITIVE..=MAX_LENGTH)?;
+            lens.focus_distance = Some(distance);
+        }
+        if let Some(shutter) = &camera.shutter {
+            let times: Vec<f32> = shutter.get_ref().iter().map(|time| *time as f32).collect();
+            match times[..] {
+                [open, close] if open.is_finite() && close.is_finite() && open <= close => {
+                    lens.shutter = (open, close);
+                }
+                _ => {
+                    return Err(self
+                        .wrong(
+                            shutter,
+                            "the shutter is not a pair of times",
+                            "not possible",
+                            "give when it opens and when it closes, the earlier first: [0, 0.5]",
+                        )
+                        .into());
+                }
+            }
+        }
+        Ok(lens)
+    }
+
+    fn light(&self, table: &LightTable, scene: &mut Scene) -> Result<()> {
+        let position = self.vector("position", &table.position)?;
+        let intensity = self.color("intensity", &table.intensity)?;
+        let radius = match &table.radius {
+            Some(radius) => self.number("radius", radius, 0.0..=MAX_LENGTH)?,
+            None => 0.0,
+        };
+        if radius > 0.0 {
+            // A sphere of radiance L and radius r has the intensity L π r² from afar.
+            let radiance = intensity / (std::f32::consts::PI * radius * radius);
+            if !radiance.is_finite() {
+                return Err(self
+                    .wrong(
+                        &table.intensity,
+                        "the light is too bright for its radius",
+                        "its radiance overflows",
+                        "make the radius larger, or leave it out for a point of light",
+                    )
+                    .into());
+            }
+            let world = &mut scene.world;
+            let id = world.add_named_material("[[light]]", Material::emissive(radiance));
+            world.add(Sphere::new(position, radius), id);
+        } else {
+            scene.lights.push(PointLight {
+                position,
+                intensity,
+            });
+        }
+        Ok(())
+    }
+
+    fn sky(&self, table: &Spanned<SkyTable>) -> Result<Surroundings> {
+        let sky = table.get_ref();
+        let strength = match &sky.strength {
+            Some(strength) => self.number("strength", strength, 0.0..=1e12)?,
+            None => 1.0,
+        };
+        let optional = |name, value: &Option<Spanned<Vec<f64>>>| {
+            value
+                .as_ref()
+                .map(|value| self.color(name, value))
+                .transpose()
+        };
+        let horizon = optional("horizon", &sky.horizon)?;
+        let zenith = optional("zenith", &sky.zenith)?;
+        let sun = match (&sky.sun_direction, &sky.sun_irradiance) {
+            (None, None) => None,
+            (Some(direction), irradiance) => {
+                let towards = self.vector("sun_direction", direction)?;
+                let Some(unit) = towards.as_dvec3().try_normalize() else {
+                    return Err(self
+                        .wrong(
+                            direction,
+                            "sun_direction is zero",
+                            "no direction",
+                            "give the direction towards the sun, for example [1, 2, 0.5]",
+                        )
+                        .into());
+                };
+                Some(Sun {
+                    direction: unit.as_vec3(),
+                    size: match &sky.sun_size {
+                        Some(size) => self.number("sun_size", size, 0.0..=180.0)?,
+                        None => DEFAULT_SUN_SIZE,
+                    },
+                    irradiance: match irradiance {
+                        Some(irradiance) => self.color("sun_irradiance", irradiance)?,
+                        None => Vec3::splat(std::f32::consts::PI),
+                    },
+                })
+            }
+            (None, Some(irradiance)) => {
+                return Err(self
+                    .wrong(
+                        irradiance,
+                        "the sun has no direction",
+                        "a sun without sun_direction",
+                        "add sun_direction, the direction towards the sun",
+                    )
+                    .into());
+            }
+        };
+        let image = sky
+            .image
+            .as_ref()
+            .map(|file| {
+                let path = self
+                    .path
+                    .parent()
+                    .unwrap_or(Path::new(""))
+                    .join(file.get_ref());
+                environment::load(&path, strength).map_err(|error| match error {
+                    Error::Scene(inner) => self
+                        .wrong(file, inner.to_string(), "named here", inner.help)
+                        .into(),
+                    other => other,
+                })
+            })
+            .transpose()?;
+        // One of the two is a sky of one colour; none of them is dark.
+        let one = horizon.or(zenith).unwrap_or(Vec3::ZERO);
+        Ok(Surroundings {
+            horizon: horizon.unwrap_or(one) * strength,
+            zenith: zenith.unwrap_or(one) * strength,
+            sun,
+            image,
+        })
+    }
+
+    fn fog(&self, fog: &FogTable) -> Result<FogBall> {
+        let albedo = match &fog.albedo {
+            Some(albedo) => self.reflectance(albedo)?,
+            None => Vec3::ONE,
+        };
+        let number = |name, value: &Option<Spanned<f64>>, range, default| match value {
+            Some(value) => self.number(name, value, range),
+            None => Ok(default),
+        };
+        Ok(FogBall {
+            medium: Fog {
+                center: match &fog.center {
+                    Some(center) => self.vector("center", center)?,
+                    None => Vec3::ZERO,
+                },
+                radius: number("radius", &fog.radius, f32::MIN_POSITIVE..=MAX_LENGTH, 0.0)?,
+                albedo,
+                extinction: self.number("extinction", &fog.extinction, 1e-30..=1e12)?,
+                anisotropy: number("anisotropy", &fog.anisotropy, -0.99..=0.99, 0.0)?,
+                ..Fog::default()
+            },
+        })
+    }
+
+    /// A material, and the thickness of its shell if it is hollow.
+    fn material(&self, table: &Spanned<MaterialTable>) -> Result<(Material, Option<f32>)> {
+        let material = table.get_ref();
+        let kind = material.kind;
+        // Each key with the kind that has it.
+        let keys: [(&str, bool, Option<std::ops::Range<usize>>); 6] = [
+            (
+                "color",
+                kind != MaterialKind::Glass,
+                material.color.as_ref().map(Spanned::span),
+            ),
+            (
+                "roughness",
+                kind == MaterialKind::Metal,
+                material.roughness.as_ref().map(Spanned::span),
+            ),
+            (
+                "index",
+                kind == MaterialKind::Glass,
+                material.index.as_ref().map(Spanned::span),
+            ),
+            (
+                "absorption",
+                kind == MaterialKind::Glass,
+                material.absorption.as_ref().map(Spanned::span),
+            ),
+            (
+                "thickness",
+                kind == MaterialKind::Glass,
+                material.thickness.as_ref().map(Spanned::span),
+            ),
+            (
+                "strength",
+                kind == MaterialKind::Emissive,
+                material.strength.as_ref().map(Spanned::span),
+            ),
+        ];
+        for (name, allowed, span) in keys {
+            if let Some(span) = span
+                && !allowed
+            {
+                return Err(self
+                    .wrong(
+                        &Spanned::new(span, ()),
+                        format!("a material of kind {kind:?} has no {name}").to_lowercase(),
+                        "not for this kind",
+                        "diffuse has color; metal has color and roughness; glass has index, absorption and thickness;                          emissive has color and strength",
+                    )
+                    .into());
+            }
+        }
+        let color = || match &material.color {
+            Some(color) => Ok(color),
+            None => Err(Error::from(self.wrong(
+                table,
+                "the material has no color",
+                "color is missing",
+                "add color = [red, green, blue]",
+            ))),
+        };
+        Ok(match kind {
+            MaterialKind::Diffuse => (Material::diffuse(self.reflectance(color()?)?), None),
+            MaterialKind::Metal => {
+                let roughness = match &material.roughness {
+                    Some(roughness) => self.number("roughness", roughness, 0.0..=1.0)?,
+                    None => 0.0,
+                };
+                (
+                    Material::metal(self.reflectance(color()?)?, roughness),
+                    None,
+                )
+            }
+            MaterialKind::Glass => {
+                let index = match &material.index {
+                    Some(index) => self.number("index", index, 0.1..=10.0)?,
+                    None => 1.5,
+                };
+                let absorption = match &material.absorption {
+                    Some(absorption) => self.color("absorption", absorption)?,
+                    None => Vec3::ZERO,
+                };
+                let thickness = material
+                    .thickness
+                    .as_ref()
+                    .map(|t| self.number("thickness", t, f32::MIN_POSITIVE..=MAX_LENGTH))
+                    .transpose()?;
+                (Material::glass(index, absorption), thickness)
+            }
+            MaterialKind::Emissive => {
+                let strength = match &material.strength {
+                    Some(strength) => self.number("strength", strength, 0.0..=1e12)?,
+                    None => 1.0,
+                };
+                let radiance = self.color("color", color()?)? * strength;
+                (Material::emissive(radiance), None)
+            }
+        })
+    }
+
+    fn whole(&self, name: &str, value: &Spanned<i64>, low: i64, high: i64) -> Result<u32> {
+        u32::try_from(*value.get_ref())
+            .ok()
+            .filter(|whole| (low..=high).contains(&i64::from(*whole)))
+            .ok_or_else(|| {
+                self.wrong(
+                    value,
+                    format!("{name} = {} is not possible", value.get_ref()),
+                    "out of range",
+                    format!("give a whole number from {low} to {high}"),
+                )
+                .into()
+            })
+    }
+
+    fn number(
+        &self,
+        name: &str,
+        value: &Spanned<f64>,
+        range: std::ops::RangeInclusive<f32>,
+    ) -> Result<f32> {
+        let number = *value.get_ref() as f32;
+        if range.contains(&number) {
+            return Ok(number);
+        }
+        let (low, high) = (range.start(), range.end());
+        let bounds = if *low == f32::MIN_POSITIVE {
+            format!("above zero, up to {high:e}")
+        } else {
+            format!("from {low} to {high:e}")
+        };
+        Err(self
+            .wrong(
+                value,
+                format!("{name} = {} is not possible", value.get_ref()),
+                "out of range",
+                format!("give a number {bounds}"),
+            )
+            .into())
     }
 
     fn world(&self, file: &File) -> Result<World> {
         let mut world = World::default();
         let mut ids = BTreeMap::new();
         for (name, material) in &file.materials {
-            let made = match material.kind {
-                MaterialKind::Diffuse => Material::diffuse(self.reflectance(&material.color)?),
-            };
-            ids.insert(name.as_str(), world.add_material(made));
+            let (made, thickness) = self.material(material)?;
+            let id = world.add_named_material(name, made);
+            let hollow = thickness.map(|thickness| {
+                let inner = Material::bubble(made.parameter, made.volume);
+                (thickness, world.add_named_material(name, inner))
+            });
+            ids.insert(name.as_str(), (id, hollow));
         }
         let mut default_id = None;
         for table in &file.spheres {
             let table = table.get_ref();
-            let id = match &table.material {
+            let (id, hollow) = match &table.material {
                 Some(name) => *ids.get(name.get_ref().as_str()).ok_or_else(|| {
                     let known: Vec<&str> = ids.keys().copied().collect();
                     self.wrong(
@@ -162,14 +579,46 @@ impl Reader<'_> {
                         },
                     )
                 })?,
-                None => *default_id
-                    .get_or_insert_with(|| world.add_material(Material::diffuse(Vec3::splat(0.5)))),
+                None => {
+                    let grey = Material::diffuse(Vec3::splat(0.5));
+                    (
+                        *default_id.get_or_insert_with(|| world.add_material(grey)),
+                        None,
+                    )
+                }
             };
             let sphere = Sphere::new(
                 self.vector("center", &table.center)?,
                 self.radius(&table.radius)?,
             );
-            world.add(sphere, id);
+            let velocity = match &table.velocity {
+                Some(velocity) => self.vector("velocity", velocity)?,
+                None => Vec3::ZERO,
+            };
+            let mut add = |sphere, id| {
+                if velocity == Vec3::ZERO {
+                    world.add(sphere, id);
+                } else {
+                    world.add_moving(sphere, id, velocity);
+                }
+            };
+            add(sphere, id);
+            if let Some((thickness, inner)) = hollow {
+                let radius = sphere.radius() - thickness;
+                if radius <= 0.0 {
+                    return Err(self
+                        .wrong(
+                            &table.radius,
+                            format!(
+                                "the shell of this sphere, {thickness} thick, leaves no hollow"
+                            ),
+                            "not more than the thickness",
+                            "give a larger radius, or a material without thickness for solid glass",
+                        )
+                        .into());
+                }
+                add(Sphere::new(sphere.center(), radius), inner);
+            }
         }
         if let Some(particles) = &file.particles {
             world.append(&self.particles(&particles.file)?);

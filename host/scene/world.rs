@@ -1,5 +1,6 @@
 //! [`World`]: spheres and materials as the kernel takes them.
 
+use glam::Vec3;
 use spherule_kernel::{Material, Sphere};
 
 /// A world of spheres, made on the host out of the device's own types and uploaded as it is.
@@ -21,12 +22,24 @@ pub struct World {
     pub material_ids: Vec<u32>,
     /// The materials.
     pub materials: Vec<Material>,
+    /// What the materials are called, where they have names; for messages.
+    pub material_names: Vec<String>,
+    /// How the spheres move, in scene units per unit of time; empty if none does.
+    pub velocities: Vec<Vec3>,
 }
 
 impl World {
     /// Adds a material and returns its index.
     pub fn add_material(&mut self, material: Material) -> u32 {
+        self.add_named_material("", material)
+    }
+
+    /// Adds a material that messages call by this name, and returns its index.
+    pub fn add_named_material(&mut self, name: &str, material: Material) -> u32 {
         self.materials.push(material);
+        self.material_names
+            .resize(self.materials.len() - 1, String::new());
+        self.material_names.push(name.into());
         self.materials.len() as u32 - 1
     }
 
@@ -34,14 +47,37 @@ impl World {
     pub fn add(&mut self, sphere: Sphere, material: u32) {
         self.spheres.push(sphere);
         self.material_ids.push(material);
+        if !self.velocities.is_empty() {
+            self.velocities.push(Vec3::ZERO);
+        }
+    }
+
+    /// Adds a sphere that moves, in scene units per unit of time; at time 0 it is where it says.
+    pub fn add_moving(&mut self, sphere: Sphere, material: u32, velocity: Vec3) {
+        self.velocities.resize(self.spheres.len(), Vec3::ZERO);
+        self.spheres.push(sphere);
+        self.material_ids.push(material);
+        self.velocities.push(velocity);
     }
 
     /// Adds the spheres and materials of another world.
     pub fn append(&mut self, other: &Self) {
         let offset = self.materials.len() as u32;
+        let moves = !(self.velocities.is_empty() && other.velocities.is_empty());
+        if moves {
+            self.velocities.resize(self.spheres.len(), Vec3::ZERO);
+            self.velocities.extend_from_slice(&other.velocities);
+        }
         self.materials.extend_from_slice(&other.materials);
+        self.material_names.resize(offset as usize, String::new());
+        self.material_names.extend_from_slice(&other.material_names);
+        self.material_names
+            .resize(self.materials.len(), String::new());
         self.spheres.extend_from_slice(&other.spheres);
         self.material_ids
             .extend(other.material_ids.iter().map(|id| id + offset));
+        if moves {
+            self.velocities.resize(self.spheres.len(), Vec3::ZERO);
+        }
     }
 }

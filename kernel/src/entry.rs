@@ -11,12 +11,16 @@ use crate::canary::{Operands, Outcome, sing};
 #[cfg(any(not(target_arch = "spirv"), feature = "f64"))]
 use crate::canary::{WideOutcome, sing_wide};
 use crate::film::render_pixel;
+use crate::integrate::{Scenery, trace_pixel};
 use crate::nearest::{is_occluded, nearest_hit_in};
 use crate::optics::{Fresnel, Incidence};
 use crate::precision::intersect;
 use crate::shading::shade;
 use crate::walk::{Walk, walk_inside};
-use crate::{Hit, Launch, Material, Pixel, Ray, Sphere, Surface, layout};
+use crate::{
+    Accumulator, Effects, Hit, Launch, Light, Material, PathLaunch, Pixel, Ray, Sphere, Surface,
+    layout,
+};
 
 /// Renders one launch: a tile of the image against a run of the spheres.
 #[spirv(compute(threads(8, 8), entry_point_name = "render"))]
@@ -44,6 +48,46 @@ pub fn render(
                 pixel,
                 pixels[index],
             );
+        }
+    }
+}
+
+/// Adds samples to the pixels of a tile, by the effects that the pipeline holds.
+#[spirv(compute(threads(8, 8), entry_point_name = "trace_paths"))]
+pub fn trace_paths(
+    #[spirv(global_invocation_id)] id: UVec3,
+    #[spirv(spec_constant(id = 1, default = 1))] rung: u32,
+    #[spirv(spec_constant(id = 2, default = 0))] effects: u32,
+    #[spirv(spec_constant(id = 3, default = 0))] is_exact: u32,
+    #[spirv(uniform, descriptor_set = 0, binding = 0)] launch: &PathLaunch,
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 1)] spheres: &[Sphere],
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 2)] velocities: &[Vec4],
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 3)] material_ids: &[u32],
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 4)] materials: &[Material],
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 5)] lights: &[Light],
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 6)] tables: &[f32],
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 7)] accumulators: &mut [Accumulator],
+) {
+    let pixel = UVec2::new(id.x, id.y);
+    if pixel.x < launch.tile_size.x && pixel.y < launch.tile_size.y {
+        let index = (pixel.y * launch.tile_size.x + pixel.x) as usize;
+        if index < accumulators.len() {
+            let mut effects = Effects::from_bits(effects);
+            if is_exact == 0 {
+                effects = effects.within(Effects::from_bits(launch.called_effects));
+            }
+            let scenery = Scenery {
+                effects,
+                rung,
+                launch,
+                spheres,
+                velocities,
+                material_ids,
+                materials,
+                lights,
+                tables,
+            };
+            accumulators[index] = trace_pixel(&scenery, pixel, accumulators[index]);
         }
     }
 }

@@ -1,15 +1,18 @@
-//! [`Launch`] and [`Pixel`]: what one launch of the `render` kernel is told, and what it
-//! writes. Runs on the GPU and on the CPU.
+//! What one launch of a kernel is told, and what it writes: [`Launch`] and [`Pixel`] for `render`,
+//! [`PathLaunch`] and [`Accumulator`] for `trace_paths`. Runs on the GPU and on the CPU.
 
 use bytemuck::{Pod, Zeroable};
 use glam::{UVec2, Vec3, Vec4};
 use spirv_std::arch::IndexUnchecked;
 
 use crate::camera::Camera;
+use crate::fog::Fog;
 use crate::hit::Hit;
-use crate::material::Material;
+use crate::integrate::luminance;
+use crate::material::{Material, material_of};
 use crate::nearest::nearest_hit_in;
 use crate::shading::shade;
+use crate::sky::Sky;
 use crate::sphere::Sphere;
 use crate::surface::Surface;
 
@@ -136,13 +139,124 @@ pub fn render_pixel(
     result
 }
 
-#[inline]
-fn material_of(sphere: usize, material_ids: &[u32], materials: &[Material]) -> Material {
-    if sphere < material_ids.len() && !materials.is_empty() {
-        let id = material_ids[sphere].min(materials.len() as u32 - 1);
-        materials[id as usize]
-    } else {
-        Material::diffuse(Vec3::ONE)
+/// One launch of `trace_paths`: a tile of the image and a run of its samples, against all spheres.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct PathLaunch {
+    /// The camera.
+    pub camera: Camera,
+    /// Width and height of the whole image, in pixels.
+    pub image_size: UVec2,
+    /// The tile's upper left pixel.
+    pub tile_origin: UVec2,
+    /// Width and height of the tile, in pixels.
+    pub tile_size: UVec2,
+    /// Index of the first sample of each pixel.
+    pub first_sample: u32,
+    /// How many samples each pixel takes.
+    pub sample_count: u32,
+    /// Another image of the same expectation for each seed.
+    pub seed: u32,
+    /// How many times light is reflected or scattered on its way, at most.
+    pub max_bounces: u32,
+    /// The radius of the lens, in scene units.
+    pub lens_radius: f32,
+    /// How far away, along the camera's forward axis, what is in focus is.
+    pub focus_distance: f32,
+    /// When the shutter opens and closes, in units of time.
+    pub shutter_open: f32,
+    /// See `shutter_open`.
+    pub shutter_close: f32,
+    /// How near, in scene units, something must be to keep ambient light away.
+    pub ambient_distance: f32,
+    /// The probability of choosing a sphere as the light is this times the luminance of its
+    /// radiance and the square of its radius.
+    pub sphere_light_probability: f32,
+    /// The bits of the effects that the scene calls for: what else the pipeline holds stays idle.
+    pub called_effects: u32,
+    /// Nothing; it keeps what follows where the GPU's layout has it.
+    pub padding: u32,
+    /// Nothing, as the field before.
+    pub padding_end: UVec2,
+    /// What surrounds the scene.
+    pub sky: Sky,
+    /// The medium, if there is one.
+    pub fog: Fog,
+}
+
+/// The samples of one pixel so far.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Accumulator {
+    /// The sums of radiance and of alpha.
+    pub(crate) color_alpha: Vec4,
+    /// The sum of squared luminance, the number of samples, the depth of the first.
+    pub(crate) statistics: Vec4,
+}
+
+impl Accumulator {
+    /// Adds a sample: its radiance, whether it saw anything but the background, and how far away
+    /// that was.
+    #[inline]
+    pub fn add(&mut self, radiance: Vec3, alpha: f32, depth: f32) {
+        let luminance = luminance(radiance);
+        let count = self.statistics.y;
+        // The depth of a pixel is that of its first sample.
+        let depth = if count == 0.0 {
+            depth
+        } else {
+            self.statistics.z
+        };
+        self.color_alpha += radiance.extend(alpha);
+        self.statistics = Vec4::new(
+            self.statistics.x + luminance * luminance,
+            count + 1.0,
+            depth,
+            0.0,
+        );
+    }
+
+    /// How many samples there are.
+    #[inline]
+    #[must_use]
+    pub fn samples(&self) -> f32 {
+        self.statistics.y
+    }
+
+    /// The mean radiance, times alpha.
+    #[inline]
+    #[must_use]
+    pub fn color(&self) -> Vec3 {
+        self.color_alpha.truncate() / self.samples().max(1.0)
+    }
+
+    /// The share of the samples that saw anything but the background.
+    #[inline]
+    #[must_use]
+    pub fn alpha(&self) -> f32 {
+        self.color_alpha.w / self.samples().max(1.0)
+    }
+
+    /// The distance that the first sample went before it met a sphere, [`Hit::NONE_T`] if it met
+    /// none.
+    #[inline]
+    #[must_use]
+    pub fn depth(&self) -> f32 {
+        self.statistics.z
+    }
+
+    /// The estimated variance of the mean's luminance, as if the samples were independent: they are
+    /// stratified, so that the true one is lower. Zero for fewer than two samples.
+    #[inline]
+    #[must_use]
+    pub fn variance_of_mean(&self) -> f32 {
+        let count = self.samples();
+        if count < 2.0 {
+            return 0.0;
+        }
+        let mean = luminance(self.color());
+        let variance = (self.statistics.x / count - mean * mean).max(0.0);
+        variance / (count - 1.0)
     }
 }
 
@@ -158,4 +272,21 @@ const _: () = {
     assert!(core::mem::offset_of!(Launch, sphere_count) == 108);
     assert!(size_of::<Pixel>() == 16);
     assert!(core::mem::offset_of!(Pixel, color_depth) == 0);
+};
+const _: () = {
+    assert!(size_of::<Launch>() == 112);
+    assert!(core::mem::offset_of!(Launch, camera) == 0);
+    assert!(core::mem::offset_of!(Launch, background) == 64);
+    assert!(core::mem::offset_of!(Launch, first_of_tile) == 76);
+    assert!(core::mem::offset_of!(Launch, image_size) == 80);
+    assert!(core::mem::offset_of!(Launch, tile_origin) == 88);
+    assert!(core::mem::offset_of!(Launch, tile_size) == 96);
+    assert!(core::mem::offset_of!(Launch, first_sphere) == 104);
+    assert!(core::mem::offset_of!(Launch, sphere_count) == 108);
+    assert!(size_of::<Pixel>() == 16);
+    assert!(core::mem::offset_of!(Pixel, color_depth) == 0);
+    assert!(size_of::<PathLaunch>() == 272);
+    assert!(core::mem::offset_of!(PathLaunch, sky) == 144);
+    assert!(core::mem::offset_of!(PathLaunch, fog) == 224);
+    assert!(size_of::<Accumulator>() == 32);
 };

@@ -16,10 +16,16 @@
 //! | [`nearest`] | the nearest hit of a ray among a slice of spheres, and whether there is any |
 //! | [`surface`] | the point and the normal at a hit |
 //! | [`camera`] | [`Camera`]: from a pixel to a ray |
-//! | [`material`] | [`Material`]: what a sphere looks like |
+//! | [`material`] | [`Material`]: what a sphere is made of |
 //! | [`optics`] | refraction and reflection between transparent media |
 //! | [`shading`] | [`Shading`]: from a hit to a colour |
-//! | [`film`] | [`Launch`] and [`Pixel`]: what a launch is told, what it writes |
+//! | [`effects`] | [`Effects`]: which effects exist in a compiled pipeline |
+//! | [`random`] | the random numbers of a sample |
+//! | [`sampling`] | random directions |
+//! | [`microfacet`] | rough metal |
+//! | [`light`], [`sky`], [`fog`] | what shines, what surrounds the scene, what fills it |
+//! | [`integrate`] | light paths: what a pixel sees by all effects |
+//! | [`film`] | what a launch is told, what it writes |
 //! | [`canary`] | what a device does to the arithmetic that the ladder needs |
 //! | [`walk`] | a light path inside a glass sphere, for the hard cases |
 //! | [`layout`] | sizes and offsets of the shared types, as numbers |
@@ -39,17 +45,25 @@
 pub mod arithmetic;
 pub mod camera;
 pub mod canary;
+pub mod effects;
 #[cfg(feature = "entry-points")]
 pub mod entry;
 pub mod film;
+pub mod fog;
 pub mod hit;
+pub mod integrate;
 pub mod layout;
+pub mod light;
 pub mod material;
+pub mod microfacet;
 pub mod nearest;
 pub mod optics;
 pub mod precision;
+pub mod random;
 pub mod ray;
+pub mod sampling;
 pub mod shading;
+pub mod sky;
 pub mod sphere;
 #[cfg(not(target_arch = "spirv"))]
 pub mod spirv;
@@ -57,9 +71,11 @@ pub mod surface;
 pub mod walk;
 
 pub use camera::Camera;
-pub use film::{Launch, Pixel};
+pub use effects::Effects;
+pub use film::{Accumulator, Launch, PathLaunch, Pixel};
 pub use glam;
 pub use hit::Hit;
+pub use light::Light;
 pub use material::Material;
 pub use nearest::nearest_hit;
 pub use precision::{Precision, Rung};

@@ -1,7 +1,9 @@
 //! The nearest hit among many spheres, and whether there is any, by testing every one. Runs on the GPU and on the CPU.
 
+use glam::Vec4;
 use spirv_std::arch::IndexUnchecked;
 
+use crate::effects::Effects;
 use crate::hit::Hit;
 use crate::precision::{Rung, intersect};
 use crate::ray::Ray;
@@ -53,8 +55,7 @@ pub fn nearest_hit_in(rung: u32, ray: &Ray, spheres: &[Sphere], first: u32, coun
     hit
 }
 
-/// Whether `ray` hits any of `spheres` on this rung: exactly where [`nearest_hit_in`] finds
-/// something, because both ask the same function of the same interval.
+/// Whether `ray` hits any of `spheres` on this rung.
 #[inline]
 #[must_use]
 pub fn is_occluded(rung: u32, ray: &Ray, spheres: &[Sphere]) -> bool {
@@ -63,6 +64,77 @@ pub fn is_occluded(rung: u32, ray: &Ray, spheres: &[Sphere]) -> bool {
     while (index < spheres.len()) & !occluded {
         // SAFETY: `index` is below the length of the slice.
         let sphere = unsafe { *spheres.index_unchecked(index) };
+        occluded = intersect(rung, sphere, ray) < ray.t_max;
+        index += 1;
+    }
+    occluded
+}
+
+/// The sphere with this index where it is at `time`, if spheres move.
+#[inline]
+#[must_use]
+pub fn sphere_at(
+    effects: Effects,
+    spheres: &[Sphere],
+    velocities: &[Vec4],
+    index: usize,
+    time: f32,
+) -> Sphere {
+    // SAFETY: the callers' indices are below the length of the slice.
+    let sphere = unsafe { *spheres.index_unchecked(index) };
+    if effects.any(Effects::MOTION_BLUR) && index < velocities.len() {
+        let moved = sphere.center() + velocities[index].truncate() * time;
+        Sphere::new(moved, sphere.radius())
+    } else {
+        sphere
+    }
+}
+
+/// [`nearest_hit_in`] among all spheres, where each is at `time`.
+#[inline]
+#[must_use]
+pub fn nearest_hit_at(
+    effects: Effects,
+    rung: u32,
+    ray: &Ray,
+    spheres: &[Sphere],
+    velocities: &[Vec4],
+    time: f32,
+) -> Hit {
+    let mut ray = *ray;
+    let mut hit = Hit::NONE;
+    let mut index = 0;
+    while index < spheres.len() {
+        let sphere = sphere_at(effects, spheres, velocities, index, time);
+        let t = intersect(rung, sphere, &ray);
+        if t < ray.t_max {
+            ray.t_max = t;
+            hit = Hit {
+                t,
+                sphere: index as u32,
+            };
+        }
+        index += 1;
+    }
+    hit
+}
+
+/// Whether `ray` hits any of `spheres`, where each is at `time`: exactly where
+/// [`nearest_hit_at`] finds something, because both ask the same function of the same interval.
+#[inline]
+#[must_use]
+pub fn is_occluded_at(
+    effects: Effects,
+    rung: u32,
+    ray: &Ray,
+    spheres: &[Sphere],
+    velocities: &[Vec4],
+    time: f32,
+) -> bool {
+    let mut index = 0;
+    let mut occluded = false;
+    while (index < spheres.len()) & !occluded {
+        let sphere = sphere_at(effects, spheres, velocities, index, time);
         occluded = intersect(rung, sphere, ray) < ray.t_max;
         index += 1;
     }

@@ -1,0 +1,138 @@
+//! The CPU path: the function that the GPU's entry point calls, over bands of rows.
+
+use std::time::Instant;
+
+use glam::UVec2;
+use rayon::prelude::*;
+use spherule_kernel::integrate::{Scenery, trace_pixel};
+use spherule_kernel::{Accumulator, Effects, PathLaunch, Rung};
+
+use super::budget::{Budget, Reached, StoppedBy, noise};
+use super::{Prepared, Progress, Settings};
+use crate::error::{Error, Result};
+use crate::film;
+use crate::render::Timings;
+use crate::scene::World;
+
+/// Rows in a band.
+const BAND_ROWS: usize = 2;
+
+/// Effects of scenes whose light does not bounce.
+const LOCAL: u32 = Effects::ANTIALIASING
+    .and(Effects::HEADLAMP)
+    .and(Effects::HARD_SHADOWS)
+    .and(Effects::AMBIENT_OCCLUSION)
+    .and(Effects::SKY_GRADIENT)
+    .and(Effects::TRANSPARENT_BACKGROUND)
+    .to_bits();
+/// Effects of scenes without fog, motion and an image of the surroundings.
+const STILL: u32 = Effects::ALL
+    .without(Effects::FOG)
+    .without(Effects::MOTION_BLUR)
+    .without(Effects::ENVIRONMENT)
+    .to_bits();
+const ALL: u32 = Effects::ALL.to_bits();
+
+type Trace = fn(&Prepared, &PathLaunch, &World, &mut [Accumulator]);
+
+/// Renders on every thread of the pool.
+///
+/// # Errors
+///
+/// [`OutOfMemory`](crate::Error::OutOfMemory) if the host has no room for the image.
+pub fn render(
+    prepared: &Prepared,
+    world: &World,
+    settings: &Settings,
+    progress: Progress<'_>,
+) -> Result<(Vec<Accumulator>, Timings, Reached)> {
+    let trace = trace_for(prepared.compiled, settings.rung);
+    let size = prepared.launch.image_size;
+    let mut accumulators = film::allocate::<Accumulator>(size.x, size.y)?;
+    let started = Instant::now();
+    let deadline = settings.time_limit.map(|limit| started + limit);
+    let mut budget = Budget::new(prepared.samples, deadline, settings.noise);
+    let mut stopped_by = StoppedBy::Samples;
+    while let Some((first, count)) = budget.next() {
+        let launch = PathLaunch {
+            first_sample: first,
+            sample_count: count,
+            ..prepared.launch
+        };
+        let begun = Instant::now();
+        trace(prepared, &launch, world, &mut accumulators);
+        let stop = budget.took(count, begun.elapsed(), || {
+            Ok::<_, Error>(noise(&accumulators))
+        })?;
+        progress(budget.share());
+        if let Some(by) = stop {
+            stopped_by = by;
+            break;
+        }
+    }
+    let timings = Timings {
+        trace: started.elapsed(),
+        ..Timings::default()
+    };
+    let reached = Reached {
+        samples: budget.done(),
+        noise: noise(&accumulators),
+        stopped_by,
+    };
+    Ok((accumulators, timings, reached))
+}
+
+/// The loop that was compiled for the rung and for the fewest effects that hold these.
+fn trace_for(effects: Effects, rung: Rung) -> Trace {
+    match rung {
+        Rung::Textbook => trace_on::<{ Rung::Textbook.to_u32() }>(effects),
+        Rung::Robust => trace_on::<{ Rung::Robust.to_u32() }>(effects),
+        Rung::Compensated => trace_on::<{ Rung::Compensated.to_u32() }>(effects),
+        Rung::Double => trace_on::<{ Rung::Double.to_u32() }>(effects),
+        Rung::Certified => trace_on::<{ Rung::Certified.to_u32() }>(effects),
+    }
+}
+
+fn trace_on<const RUNG: u32>(effects: Effects) -> Trace {
+    let fits = |set: u32| effects.without(Effects::from_bits(set)).is_empty();
+    if fits(LOCAL) {
+        trace::<LOCAL, RUNG>
+    } else if fits(STILL) {
+        trace::<STILL, RUNG>
+    } else {
+        trace::<ALL, RUNG>
+    }
+}
+
+fn trace<const EFFECTS: u32, const RUNG: u32>(
+    prepared: &Prepared,
+    launch: &PathLaunch,
+    world: &World,
+    accumulators: &mut [Accumulator],
+) {
+    let called = Effects::from_bits(launch.called_effects);
+    let scenery = Scenery {
+        effects: Effects::from_bits(EFFECTS).within(called),
+        rung: RUNG,
+        launch,
+        spheres: &world.spheres,
+        velocities: &prepared.velocities,
+        material_ids: &world.material_ids,
+        materials: &world.materials,
+        lights: &prepared.lights,
+        tables: &prepared.tables,
+    };
+    let width = launch.tile_size.x as usize;
+    accumulators
+        .par_chunks_mut(width * BAND_ROWS)
+        .enumerate()
+        .for_each(|(band, accumulators)| {
+            for (index, accumulator) in accumulators.iter_mut().enumerate() {
+                let at = UVec2::new(
+                    (index % width) as u32,
+                    (band * BAND_ROWS + index / width) as u32,
+                );
+                *accumulator = trace_pixel(&scenery, at, *accumulator);
+            }
+        });
+}

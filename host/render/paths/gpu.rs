@@ -1,0 +1,179 @@
+//! The GPU path: the `trace_paths` entry point, tile by tile and run of samples by run.
+
+use std::time::{Duration, Instant};
+
+use glam::UVec2;
+use spherule_kernel::{Accumulator, Effects, PathLaunch};
+
+use super::budget::{Budget, Reached, StoppedBy, noise};
+use super::{Prepared, Progress, Settings};
+use crate::accuracy::canary::Canary;
+use crate::device::{Access, Gpu, Kernel};
+use crate::error::{Error, Result};
+use crate::film;
+use crate::kernel_module;
+use crate::render::Timings;
+use crate::render::pace::Pace;
+use crate::scene::World;
+
+/// The entry point's name, for messages.
+const ENTRY: &str = "trace_paths";
+/// Pixels of one tile at most: what one readback moves.
+const MAX_TILE_PIXELS: u64 = 1 << 23;
+/// Rays of one sample of one pixel, for the size of the first launch.
+const RAYS_A_SAMPLE: u64 = 4;
+
+/// Compiles the kernel for these settings.
+///
+/// # Errors
+///
+/// [`Error::RungRefused`] if the canary objects to the rung, and the device's errors.
+pub fn compile(gpu: &Gpu, prepared: &Prepared, settings: &Settings) -> Result<Kernel> {
+    Canary::require_on_gpu(gpu, settings.rung)?;
+    let is_exact = prepared.compiled == prepared.shown;
+    let module = kernel_module::for_rung(settings.rung)?
+        .specialise(Effects::SPEC_ID, prepared.compiled.to_bits())?
+        .specialise(Effects::IS_EXACT_SPEC_ID, is_exact.into())?;
+    let mut access = vec![Access::Read; 8];
+    access[0] = Access::Uniform;
+    access[7] = Access::ReadWrite;
+    gpu.kernel(&module, ENTRY, &access)
+}
+
+/// Renders on `gpu`.
+///
+/// # Errors
+///
+/// The device's errors, [`Error::RungRefused`] if the canary objects to the rung, and
+/// [`Error::Readback`] if a thread wrote no pixel.
+pub fn render(
+    gpu: &Gpu,
+    prepared: &Prepared,
+    world: &World,
+    settings: &Settings,
+    progress: Progress<'_>,
+) -> Result<(Vec<Accumulator>, Timings, Reached)> {
+    let started = Instant::now();
+    let kernel = compile(gpu, prepared, settings)?;
+    let compile = started.elapsed();
+    let size = prepared.launch.image_size;
+    let spheres = gpu.upload("spheres", &world.spheres)?;
+    let velocities = gpu.upload("velocities", &prepared.velocities)?;
+    let material_ids = gpu.upload("material ids", &world.material_ids)?;
+    let materials = gpu.upload("materials", &world.materials)?;
+    let lights = gpu.upload("lights", &prepared.lights)?;
+    let tables = gpu.upload("tables", &prepared.tables)?;
+    let uniform = gpu.upload_uniform("launch", &prepared.launch)?;
+    let limits = gpu.limits();
+    let threads = u64::from(limits.max_compute_workgroups_per_dimension) * 8;
+    let max_pixels = (limits
+        .max_storage_buffer_binding_size
+        .min(limits.max_buffer_size)
+        / size_of::<Accumulator>() as u64)
+        .min(MAX_TILE_PIXELS)
+        .min(u64::from(size.x) * u64::from(size.y));
+    let sums = gpu.zeroed::<Accumulator>("accumulators", max_pixels as usize)?;
+    let mut timings = Timings {
+        setup: started.elapsed(),
+        compile,
+        ..Timings::default()
+    };
+
+    let work = world.spheres.len() as u64 * RAYS_A_SAMPLE;
+    let tracing = Instant::now();
+    let mut image = film::allocate::<Accumulator>(size.x, size.y)?;
+    let mut origin = UVec2::ZERO;
+    let (mut fewest, mut stopped_by) = (u32::MAX, StoppedBy::Samples);
+    while origin.y < size.y {
+        let mut tile = Pace::default().tile(size.x, size - origin, max_pixels, work);
+        tile.x = u64::from(tile.x).min(threads) as u32;
+        tile.y = if tile.x == size.x {
+            u64::from(tile.y).min(threads) as u32
+        } else {
+            1
+        };
+        let count = (tile.x * tile.y) as usize;
+        let start = origin.y as usize * size.x as usize + origin.x as usize;
+        // What is left of the time is shared out evenly over what is left of the image.
+        let deadline = settings.time_limit.map(|limit| {
+            let left = limit.saturating_sub(tracing.elapsed());
+            Instant::now() + left.mul_f64(count as f64 / (image.len() - start) as f64)
+        });
+        let mut budget = Budget::new(prepared.samples, deadline, settings.noise);
+        gpu.clear(&sums)?;
+        while let Some((first, samples)) = budget.next() {
+            let launch = PathLaunch {
+                tile_origin: origin,
+                tile_size: tile,
+                first_sample: first,
+                sample_count: samples,
+                ..prepared.launch
+            };
+            gpu.update(&uniform, &launch)?;
+            let took = gpu.launch(
+                &kernel,
+                &[
+                    uniform.binding(),
+                    spheres.binding(),
+                    velocities.binding(),
+                    material_ids.binding(),
+                    materials.binding(),
+                    lights.binding(),
+                    tables.binding(),
+                    sums.binding(),
+                ],
+                kernel.workgroups_for([tile.x, tile.y, 1]),
+            )?;
+            timings.trace += took.best();
+            let stop = budget.took(samples, took.best(), || {
+                Ok::<_, Error>(noise(&gpu.read_first(&sums, count)?))
+            })?;
+            progress((start as f64 + count as f64 * budget.share()) / image.len() as f64);
+            if let Some(by) = stop {
+                if by != StoppedBy::Samples {
+                    stopped_by = by;
+                }
+                break;
+            }
+        }
+        fewest = fewest.min(budget.done());
+
+        let reading = Instant::now();
+        let pixels = gpu.read_first(&sums, count)?;
+        check_written(gpu, &pixels, budget.done())?;
+        image[start..start + count].copy_from_slice(&pixels);
+        timings.readback += reading.elapsed();
+        origin.x += tile.x;
+        if origin.x == size.x {
+            origin = UVec2::new(0, origin.y + tile.y);
+        }
+    }
+    if timings.trace == Duration::ZERO {
+        timings.trace = tracing.elapsed();
+    }
+    let reached = Reached {
+        samples: fewest,
+        noise: noise(&image),
+        stopped_by,
+    };
+    Ok((image, timings, reached))
+}
+
+/// A kernel that panics on the device returns without a word; its pixel then lacks samples.
+fn check_written(gpu: &Gpu, pixels: &[Accumulator], samples: u32) -> Result<()> {
+    let missing = pixels
+        .iter()
+        .filter(|pixel| pixel.samples() != samples as f32)
+        .count();
+    if missing == 0 {
+        return Ok(());
+    }
+    Err(Error::Readback {
+        what: "the image".into(),
+        device: gpu.name().into(),
+        reason: format!(
+            "{missing} of {} threads of {ENTRY} did not take their {samples} samples",
+            pixels.len()
+        ),
+    })
+}

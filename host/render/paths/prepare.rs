@@ -1,0 +1,237 @@
+//! [`Prepared`]: what the kernel is told of a scene.
+
+use std::f32::consts::PI;
+
+use glam::{DVec3, Vec3, Vec4};
+use spherule_kernel::fog::Fog;
+use spherule_kernel::integrate::luminance;
+use spherule_kernel::microfacet::{ALBEDO_LEN, Albedo};
+use spherule_kernel::sky::Sky;
+use spherule_kernel::{Effects, Light, Material, PathLaunch};
+
+use super::EffectChoice;
+use crate::error::Result;
+use crate::render::whole_image;
+use crate::scene::Scene;
+use crate::scene::surroundings::EnvironmentImage;
+
+/// What the kernel is told of a scene, besides its world.
+#[derive(Clone, Debug)]
+pub struct Prepared {
+    /// The launch that covers the whole image and no samples yet.
+    pub launch: PathLaunch,
+    /// For each sphere, how it moves; empty if none does.
+    pub velocities: Vec<Vec4>,
+    /// The lights that are looked for.
+    pub lights: Vec<Light>,
+    /// The tables of rough metal and of the environment.
+    pub tables: Vec<f32>,
+    /// The effects that the image shows.
+    pub shown: Effects,
+    /// The effects that the pipeline is compiled for.
+    pub compiled: Effects,
+    /// Samples a pixel.
+    pub samples: u32,
+}
+
+impl Prepared {
+    /// Prepares `scene`.
+    ///
+    /// # Errors
+    ///
+    /// As [`whole_image`].
+    pub fn new(scene: &Scene, choice: EffectChoice) -> Result<Self> {
+        let whole = whole_image(scene)?;
+        let called = scene.effects();
+        let shown = choice.shown(called);
+        let view = scene.view_or_framed();
+        let lens = scene.lens;
+        let (lights, mut sky, sphere_light_probability) = lights(scene);
+        if let Some(image) = scene.sky.as_ref().and_then(|sky| sky.image.as_ref()) {
+            sky.environment_size = glam::UVec2::new(image.width, image.height);
+        }
+        let launch = PathLaunch {
+            camera: whole.camera,
+            image_size: whole.image_size,
+            tile_origin: whole.tile_origin,
+            tile_size: whole.tile_size,
+            seed: scene.sampling.seed,
+            max_bounces: scene.sampling.max_bounces,
+            lens_radius: 0.5 * lens.aperture,
+            focus_distance: lens
+                .focus_distance
+                .unwrap_or_else(|| view.eye.distance(view.target)),
+            shutter_open: lens.shutter.0,
+            shutter_close: lens.shutter.1,
+            ambient_distance: scene.sampling.ambient_occlusion.unwrap_or(0.0),
+            sphere_light_probability,
+            called_effects: shown.to_bits(),
+            sky,
+            fog: fog(scene, view.eye),
+            ..PathLaunch::default()
+        };
+        let velocities = if shown.any(Effects::MOTION_BLUR) {
+            let velocities = scene.world.velocities.iter();
+            velocities.map(|velocity| velocity.extend(0.0)).collect()
+        } else {
+            Vec::new()
+        };
+        Ok(Self {
+            launch,
+            velocities,
+            lights,
+            tables: tables(scene, shown),
+            shown,
+            compiled: choice.compiled(called),
+            samples: if shown.any(Effects::ANTIALIASING) {
+                scene.samples()
+            } else {
+                1
+            },
+        })
+    }
+}
+
+/// The lights with their probabilities, the sky with those of its own, and the factor that makes a
+/// sphere's probability out of its radiance and radius.
+///
+/// The sun, the environment, and all lights in the scene together share the choice evenly; among
+/// the last, power decides.
+fn lights(scene: &Scene) -> (Vec<Light>, Sky, f32) {
+    let world = &scene.world;
+    let mut local: Vec<(Light, f64)> = Vec::new();
+    for light in &scene.lights {
+        let power = 4.0 * PI * luminance(light.intensity);
+        local.push((Light::point(light.position, light.intensity), power.into()));
+    }
+    if world.materials.iter().any(|m| m.kind == Material::EMISSIVE) {
+        for (index, (sphere, id)) in world.spheres.iter().zip(&world.material_ids).enumerate() {
+            let material = world.materials[*id as usize];
+            if material.kind == Material::EMISSIVE {
+                let r = f64::from(sphere.radius());
+                let power =
+                    4.0 * f64::from(PI * PI) * f64::from(luminance(material.volume)) * r * r;
+                local.push((Light::sphere(index as u32, material.volume), power));
+            }
+        }
+    }
+    local.retain(|(_, power)| *power > 0.0);
+    let total: f64 = local.iter().map(|(_, power)| power).sum();
+
+    let mut sky = Sky {
+        horizon: scene.background,
+        zenith: scene.background,
+        ..Sky::default()
+    };
+    let mut far = Vec::new();
+    if let Some(surroundings) = &scene.sky {
+        (sky.horizon, sky.zenith) = (surroundings.horizon, surroundings.zenith);
+        if let Some(sun) = surroundings.sun {
+            let half = 0.5 * f64::from(sun.size).to_radians();
+            let height = (2.0 * (0.5 * half).sin().powi(2)) as f32;
+            let mut color = sun.irradiance;
+            if height > 0.0 {
+                // E = L π sin² of the half angle, while the disc is above the horizon.
+                let squared_sine = half.min(0.5 * f64::from(PI)).sin().powi(2) as f32;
+                color /= PI * squared_sine;
+                sky.sun_radiance = color;
+            }
+            (sky.sun_direction, sky.sun_height) = (sun.direction, height);
+            if luminance(color) > 0.0 {
+                far.push(Light::sun(sun.direction, height, color));
+            }
+        }
+        if surroundings.image.is_some() {
+            far.push(Light::environment());
+        }
+    }
+
+    let groups = far.len() + usize::from(!local.is_empty());
+    let share = 1.0 / groups.max(1) as f64;
+    let mut lights = Vec::new();
+    let mut cumulative = 0.0;
+    let mut add = |light: Light, probability: f64| {
+        cumulative += probability;
+        lights.push(Light {
+            probability: probability as f32,
+            cumulative: cumulative as f32,
+            ..light
+        });
+    };
+    for (light, power) in local {
+        add(light, share * power / total);
+    }
+    for light in far {
+        add(light, share);
+        match light.kind {
+            Light::SUN => sky.sun_probability = share as f32,
+            _ => sky.environment_probability = share as f32,
+        }
+    }
+    let factor = share * 4.0 * f64::from(PI * PI) / total;
+    let factor = if total > 0.0 { factor as f32 } else { 0.0 };
+    (lights, sky, factor)
+}
+
+/// The medium, in the ball that it is said to fill or else in one about everything.
+fn fog(scene: &Scene, eye: Vec3) -> Fog {
+    let Some(fog) = scene.fog else {
+        return Fog::default();
+    };
+    let mut medium = fog.medium;
+    if medium.radius == 0.0 {
+        let eye = eye.as_dvec3();
+        let (mut low, mut high) = (eye, eye);
+        for sphere in &scene.world.spheres {
+            let center = sphere.center().as_dvec3();
+            let radius = DVec3::splat(sphere.radius().into());
+            low = low.min(center - radius);
+            high = high.max(center + radius);
+        }
+        medium.center = ((low + high) * 0.5).as_vec3();
+        medium.radius = ((high - low).length() * 0.5) as f32;
+    }
+    medium
+}
+
+fn tables(scene: &Scene, shown: Effects) -> Vec<f32> {
+    let mut tables = Vec::new();
+    if shown.any(Effects::ROUGH_METAL) {
+        tables.extend(Albedo::table());
+    }
+    if shown.any(Effects::ENVIRONMENT)
+        && let Some(image) = scene.sky.as_ref().and_then(|sky| sky.image.as_ref())
+    {
+        tables.resize(ALBEDO_LEN, 1.0);
+        environment(image, &mut tables);
+    }
+    tables
+}
+
+/// The cumulative probabilities of rows and of texels in rows, and the texels.
+fn environment(image: &EnvironmentImage, tables: &mut Vec<f32>) {
+    let (width, height) = (image.width as usize, image.height as usize);
+    let mut rows = Vec::with_capacity(height);
+    let mut columns = Vec::with_capacity(width * height);
+    let mut total = 0.0;
+    for (row, texels) in image.texels.chunks_exact(width).enumerate() {
+        // A texel counts by its solid angle, and never for nothing.
+        let angle = |row: usize| (f64::from(PI) * row as f64 / height as f64).cos();
+        let solid = angle(row) - angle(row + 1);
+        let weights: Vec<f64> = texels
+            .iter()
+            .map(|texel| f64::from(luminance(*texel)).max(1e-12))
+            .collect();
+        let sum: f64 = weights.iter().sum();
+        let mut cumulative = 0.0;
+        columns.extend(weights.iter().map(|weight| {
+            cumulative += weight;
+            (cumulative / sum) as f32
+        }));
+        total += sum * solid;
+        rows.push(total);
+    }
+    tables.extend(rows.iter().map(|sum| (sum / total) as f32));
+    tables.extend(columns);
+    tables.extend(image.texels.iter().flat_map(|texel| texel.to_array()));
+}

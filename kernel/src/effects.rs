@@ -1,0 +1,123 @@
+//! [`Effects`]: which effects exist in a compiled pipeline. Runs on the GPU and on the CPU.
+//!
+//! The set is fixed before the kernel is compiled: on the GPU it is a specialisation constant, on
+//! the CPU a constant that each loop is compiled for. What is not in it is not in the machine code.
+
+use bytemuck::{Pod, Zeroable};
+
+/// A set of effects, one bit each.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
+#[repr(transparent)]
+pub struct Effects(u32);
+
+macro_rules! effects {
+    ($($(#[$doc:meta])* $constant:ident = $bit:literal, $name:literal;)*) => {
+        impl Effects {
+            $($(#[$doc])* pub const $constant: Self = Self(1 << $bit);)*
+
+            /// Every effect.
+            pub const ALL: Self = Self($((1 << $bit))|*);
+
+            /// Each effect with its name.
+            #[cfg(not(target_arch = "spirv"))]
+            pub const NAMED: &[(Self, &'static str)] = &[$((Self::$constant, $name)),*];
+        }
+    };
+}
+
+effects! {
+    /// More than one sample a pixel, each at a place of its own in it.
+    ANTIALIASING = 0, "antialiasing";
+    /// A lamp at the eye, for scenes that have no light of their own.
+    HEADLAMP = 1, "headlamp";
+    /// Points of light and a sun without extent.
+    HARD_SHADOWS = 2, "hard-shadows";
+    /// Spheres of light and a sun of some extent, sampled by solid angle.
+    SOFT_SHADOWS = 3, "soft-shadows";
+    /// Ambient light, darker where something is near.
+    AMBIENT_OCCLUSION = 4, "ambient-occlusion";
+    /// Metal as smooth as a mirror.
+    MIRROR = 5, "mirror";
+    /// Rough metal.
+    ROUGH_METAL = 6, "rough-metal";
+    /// Glass, solid or hollow.
+    GLASS = 7, "glass";
+    /// Spheres that glow.
+    EMISSION = 8, "emission";
+    /// Light that diffuse surfaces give to each other.
+    INTERREFLECTION = 9, "interreflection";
+    /// A lens of some extent: what is out of focus blurs.
+    DEFOCUS = 10, "defocus";
+    /// Spheres that move while the shutter is open.
+    MOTION_BLUR = 11, "motion-blur";
+    /// A homogeneous medium.
+    FOG = 12, "fog";
+    /// A sky that changes from the horizon to the zenith.
+    SKY_GRADIENT = 13, "sky-gradient";
+    /// The disc of the sun.
+    SUN = 14, "sun";
+    /// An image of the surroundings as the sky.
+    ENVIRONMENT = 15, "environment";
+    /// A background that lets through what is behind the image.
+    TRANSPARENT_BACKGROUND = 16, "transparent-background";
+}
+
+impl Effects {
+    /// The specialisation constant that holds the set that the pipeline is compiled for.
+    pub const SPEC_ID: u32 = 2;
+    /// The specialisation constant that is 1 where a pipeline is for scenes that call for exactly
+    /// that set, and 0 where the launch says which of them the scene calls for.
+    pub const IS_EXACT_SPEC_ID: u32 = 3;
+
+    /// No effect.
+    pub const NONE: Self = Self(0);
+
+    /// The set with these bits.
+    #[inline]
+    #[must_use]
+    pub const fn from_bits(bits: u32) -> Self {
+        Self(bits & Self::ALL.0)
+    }
+
+    /// The set as the kernel's constant.
+    #[inline]
+    #[must_use]
+    pub const fn to_bits(self) -> u32 {
+        self.0
+    }
+
+    /// Whether the set holds any of `effects`.
+    #[inline]
+    #[must_use]
+    pub const fn any(self, effects: Self) -> bool {
+        self.0 & effects.0 != 0
+    }
+
+    /// The effects of both sets.
+    #[inline]
+    #[must_use]
+    pub const fn and(self, effects: Self) -> Self {
+        Self(self.0 | effects.0)
+    }
+
+    /// The effects that are in both sets.
+    #[inline]
+    #[must_use]
+    pub const fn within(self, effects: Self) -> Self {
+        Self(self.0 & effects.0)
+    }
+
+    /// The effects of this set that are not in `effects`.
+    #[inline]
+    #[must_use]
+    pub const fn without(self, effects: Self) -> Self {
+        Self(self.0 & !effects.0)
+    }
+
+    /// Whether there is none.
+    #[inline]
+    #[must_use]
+    pub const fn is_empty(self) -> bool {
+        self.0 == 0
+    }
+}

@@ -1,0 +1,96 @@
+//! [`Fog`]: a ball of a homogeneous medium. Runs on the GPU and on the CPU.
+//!
+//! Light goes a distance of the density σ e^(−σ s) until it is scattered or absorbed, and is
+//! scattered by the phase function of L. G. Henyey and J. L. Greenstein, Diffuse radiation in the
+//! galaxy, Astrophys. J. 93 (1941).
+
+use core::f32::consts::{FRAC_1_PI, TAU};
+
+use bytemuck::{Pod, Zeroable};
+use glam::{UVec2, Vec2, Vec3};
+// On the CPU, std has these functions.
+#[cfg(target_arch = "spirv")]
+use spirv_std::num_traits::Float as _;
+
+use crate::sampling::{tangents, uniform_sphere};
+use crate::surface::unit;
+
+/// A ball of fog.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Fog {
+    /// The centre of the ball, in scene units.
+    pub center: Vec3,
+    /// Its radius.
+    pub radius: f32,
+    /// The share of the light that is scattered rather than absorbed, each channel.
+    pub albedo: Vec3,
+    /// σ: the chance of meeting the medium, per scene unit.
+    pub extinction: f32,
+    /// g: the mean cosine between light before and after; 0 is the same in all directions.
+    pub anisotropy: f32,
+    /// Nothing; it keeps what follows where the GPU's layout has it.
+    pub padding: u32,
+    /// Nothing, as the field before.
+    pub padding_end: UVec2,
+}
+
+impl Fog {
+    /// Where a ray with a unit direction is in the fog, up to `t_max`: from and to. Empty where the
+    /// first is not below the second.
+    #[inline]
+    #[must_use]
+    pub fn span(&self, origin: Vec3, direction: Vec3, t_max: f32) -> (f32, f32) {
+        let o = origin - self.center;
+        let b = o.dot(direction);
+        let foot = o - direction * b;
+        let discriminant = self.radius * self.radius - foot.dot(foot);
+        if discriminant <= 0.0 {
+            return (0.0, 0.0);
+        }
+        let half = discriminant.sqrt();
+        ((-b - half).max(0.0), (-b + half).min(t_max))
+    }
+
+    /// The share of light that crosses the fog along the ray up to `t_max`.
+    #[inline]
+    #[must_use]
+    pub fn transmittance(&self, origin: Vec3, direction: Vec3, t_max: f32) -> f32 {
+        let (from, to) = self.span(origin, direction, t_max);
+        (-self.extinction * (to - from).max(0.0)).exp()
+    }
+
+    /// How far light goes in the fog until it meets it.
+    #[inline]
+    #[must_use]
+    pub fn sample_distance(&self, u: f32) -> f32 {
+        -(1.0 - u).ln() / self.extinction
+    }
+
+    /// The phase function, which is also the density of [`Fog::sample`].
+    #[inline]
+    #[must_use]
+    pub fn phase(&self, cosine: f32) -> f32 {
+        let g = self.anisotropy;
+        let base = (1.0 + g * g - 2.0 * g * cosine).max(1e-12);
+        0.25 * FRAC_1_PI * (1.0 - g * g) / (base * base.sqrt())
+    }
+
+    /// A direction into which light that comes along `direction` is scattered.
+    #[inline]
+    #[must_use]
+    pub fn sample(&self, direction: Vec3, u: Vec2) -> Vec3 {
+        let g = self.anisotropy;
+        if g.abs() < 1e-3 {
+            return uniform_sphere(u);
+        }
+        let ratio = (1.0 - g * g) / (1.0 - g + 2.0 * g * u.x);
+        let cosine = ((1.0 + g * g - ratio * ratio) / (2.0 * g)).clamp(-1.0, 1.0);
+        let sine = (1.0 - cosine * cosine).sqrt();
+        let angle = TAU * u.y;
+        let (x, y) = tangents(direction);
+        unit(x * (sine * angle.cos()) + y * (sine * angle.sin()) + direction * cosine)
+    }
+}
+
+const _: () = assert!(size_of::<Fog>() == 48);

@@ -1,0 +1,99 @@
+//! Random directions and points, made of pairs of uniform random numbers. Runs on the GPU and on
+//! the CPU.
+
+use core::f32::consts::{FRAC_1_PI, TAU};
+
+use glam::{Vec2, Vec3};
+// On the CPU, std has these functions.
+#[cfg(target_arch = "spirv")]
+use spirv_std::num_traits::Float as _;
+
+use crate::surface::unit;
+
+/// Two unit vectors that form a right-handed basis with the unit vector `normal` (T. Duff et al.,
+/// Building an Orthonormal Basis, Revisited, J. Comput. Graph. Tech. 6 (2017)).
+#[inline]
+#[must_use]
+pub fn tangents(normal: Vec3) -> (Vec3, Vec3) {
+    let sign = if normal.z >= 0.0 { 1.0 } else { -1.0 };
+    let a = -1.0 / (sign + normal.z);
+    let b = normal.x * normal.y * a;
+    (
+        Vec3::new(
+            1.0 + sign * normal.x * normal.x * a,
+            sign * b,
+            -sign * normal.x,
+        ),
+        Vec3::new(b, sign + normal.y * normal.y * a, -normal.y),
+    )
+}
+
+/// A unit vector, uniform over the sphere.
+#[inline]
+#[must_use]
+pub fn uniform_sphere(u: Vec2) -> Vec3 {
+    let z = 1.0 - 2.0 * u.x;
+    let r = (1.0 - z * z).max(0.0).sqrt();
+    let angle = TAU * u.y;
+    Vec3::new(r * angle.cos(), r * angle.sin(), z)
+}
+
+/// A unit vector about the unit vector `normal` with the density cos θ / π: a point on the unit
+/// sphere that touches the surface, seen from where it touches.
+#[inline]
+#[must_use]
+pub fn cosine_hemisphere(normal: Vec3, u: Vec2) -> Vec3 {
+    let direction = unit(normal + uniform_sphere(u));
+    // Exactly opposite, once in 2²⁴ times or so.
+    if direction.dot(normal) > 0.0 {
+        direction
+    } else {
+        normal
+    }
+}
+
+/// The density of [`cosine_hemisphere`].
+#[inline]
+#[must_use]
+pub fn cosine_density(cosine: f32) -> f32 {
+    cosine.max(0.0) * FRAC_1_PI
+}
+
+/// A unit vector uniform in the cone about the unit vector `axis` whose edge is at the cosine
+/// 1 − `height`.
+#[inline]
+#[must_use]
+pub fn cone(axis: Vec3, height: f32, u: Vec2) -> Vec3 {
+    let below = height * u.x;
+    let sine = (below * (2.0 - below)).max(0.0).sqrt();
+    let angle = TAU * u.y;
+    let (x, y) = tangents(axis);
+    unit(x * (sine * angle.cos()) + y * (sine * angle.sin()) + axis * (1.0 - below))
+}
+
+/// The density of [`cone`], inside of it.
+#[inline]
+#[must_use]
+pub fn cone_density(height: f32) -> f32 {
+    1.0 / (TAU * height)
+}
+
+/// A point uniform in the unit disc.
+#[inline]
+#[must_use]
+pub fn disc(u: Vec2) -> Vec2 {
+    let r = u.x.sqrt();
+    let angle = TAU * u.y;
+    Vec2::new(r * angle.cos(), r * angle.sin())
+}
+
+/// The weight of a sample of density `own` where another way would have had the density `other`:
+/// the power heuristic (E. Veach, Robust Monte Carlo Methods for Light Transport Simulation, 1997,
+/// § 9.2.4).
+#[inline]
+#[must_use]
+pub fn power_heuristic(own: f32, other: f32) -> f32 {
+    // Of the ratio, so that no square overflows.
+    let ratio = other / own;
+    1.0 / (1.0 + ratio * ratio)
+}
