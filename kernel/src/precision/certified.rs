@@ -4,8 +4,8 @@
 //! adaptive predicates (Discrete Comput. Geom. 18 (1997) 305).
 //!
 //! **1. A filter in f32.** With u = 2⁻²⁴, forwards through o = O − C, b/a and the foot
-//! f = o − (b/a)d: each component of f is off by at most 10u|o|, because |(b/a)d| ≤ |o|; so f·f is
-//! off by 20u|f||o| + 100u²o·o + 3u f·f ≤ 16u (f·f + o·o). Against r², off by u r², a line misses
+//! f = o − (b/a)d: each component of f is off by at most 11u|o|, because |(b/a)d| ≤ |o|; so f·f is
+//! off by 22u|f||o| + 121u²o·o + 3u f·f ≤ 16u (f·f + o·o). Against r², off by u r², a line misses
 //! for certain where f·f − r² > 32u (f·f + o·o + r²). Where c is certainly positive, a ray with
 //! b > 0 leaves and misses: were b truly negative, it would be by 8u|o||d| at most, and a hit needs
 //! b² ≥ ac. And where the ray enters, t is at least (|b| − √(a(r² − f·f + E)))/a, less 32u of its
@@ -59,6 +59,14 @@ pub enum Stage {
 
 impl Precision for Certified {
     #[inline]
+    fn may_hit(sphere: Sphere, ray: &Ray) -> bool {
+        let (ff, oo, rr, b) = foot(sphere, ray);
+        let passes_by = ff - rr > FILTER * (ff + oo + rr);
+        let is_outside = oo - rr > FILTER * (oo + rr);
+        !(passes_by | (is_outside & (b > 0.0)))
+    }
+
+    #[inline]
     fn intersect(sphere: Sphere, ray: &Ray) -> f32 {
         intersect_with_stage(sphere, ray).0
     }
@@ -104,16 +112,24 @@ pub fn intersect_with_stage(sphere: Sphere, ray: &Ray) -> (f32, Stage) {
     }
 }
 
+/// f·f, o·o, r² and b.
+#[inline]
+fn foot(sphere: Sphere, ray: &Ray) -> (f32, f32, f32, f32) {
+    let o = ray.origin - sphere.center();
+    let d = ray.direction;
+    let b = o.dot(d);
+    // The same for every sphere that the ray is tested against.
+    let inverse = 1.0 / d.dot(d);
+    let foot = o - d * (b * inverse);
+    let rr = sphere.radius() * sphere.radius();
+    (foot.dot(foot), o.dot(o), rr, b)
+}
+
 /// Stage 1. False where it cannot tell, which includes every NaN.
 #[inline]
 fn misses_for_certain(sphere: Sphere, ray: &Ray) -> bool {
-    let o = ray.origin - sphere.center();
-    let d = ray.direction;
-    let a = d.dot(d);
-    let b = o.dot(d);
-    let foot = o - d * (b / a);
-    let (ff, oo) = (foot.dot(foot), o.dot(o));
-    let rr = sphere.radius() * sphere.radius();
+    let a = ray.direction.dot(ray.direction);
+    let (ff, oo, rr, b) = foot(sphere, ray);
     let passes_by = ff - rr > FILTER * (ff + oo + rr);
     let is_outside = oo - rr > FILTER * (oo + rr);
     if passes_by | (is_outside & (b > 0.0)) {
