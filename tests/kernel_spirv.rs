@@ -156,6 +156,7 @@ fn check_offsets(bytes: &[u8]) {
         [fields("Fog"), vec![36, 40]].concat(),
         fields("PathLaunch"),
         fields("Accumulator"),
+        fields("Node"),
     ];
     if Module::from_bytes("committed", bytes).is_ok_and(|module| module.needs_f64()) {
         expected.push(fields("WideOutcome"));

@@ -7,6 +7,7 @@
 //! | [`surroundings`] | light, sky, fog, lens: what there is besides spheres |
 //! | [`mod@effects`] | which effects a scene calls for, and by what |
 //! | [`toml_file`] | scenes written by a person |
+//! | [`tree`] | boxes around the spheres of a world |
 //! | [`molecule`] | molecules from PDB and XYZ files |
 //! | [`environment`] | images of the surroundings |
 
@@ -15,6 +16,7 @@ pub mod environment;
 pub mod molecule;
 pub mod surroundings;
 pub mod toml_file;
+pub mod tree;
 pub mod view;
 pub mod world;
 

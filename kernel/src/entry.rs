@@ -16,6 +16,7 @@ use crate::nearest::{is_occluded, nearest_hit_in};
 use crate::optics::{Fresnel, Incidence};
 use crate::precision::intersect;
 use crate::shading::shade;
+use crate::tree::Node;
 use crate::walk::{Walk, walk_inside};
 use crate::{
     Accumulator, Effects, Hit, Launch, Light, Material, PathLaunch, Pixel, Ray, Sphere, Surface,
@@ -59,6 +60,7 @@ pub fn trace_paths(
     #[spirv(spec_constant(id = 1, default = 1))] rung: u32,
     #[spirv(spec_constant(id = 2, default = 0))] effects: u32,
     #[spirv(spec_constant(id = 3, default = 0))] is_exact: u32,
+    #[spirv(spec_constant(id = 4, default = 0))] has_tree: u32,
     #[spirv(uniform, descriptor_set = 0, binding = 0)] launch: &PathLaunch,
     #[spirv(storage_buffer, descriptor_set = 0, binding = 1)] spheres: &[Sphere],
     #[spirv(storage_buffer, descriptor_set = 0, binding = 2)] velocities: &[Vec4],
@@ -66,7 +68,8 @@ pub fn trace_paths(
     #[spirv(storage_buffer, descriptor_set = 0, binding = 4)] materials: &[Material],
     #[spirv(storage_buffer, descriptor_set = 0, binding = 5)] lights: &[Light],
     #[spirv(storage_buffer, descriptor_set = 0, binding = 6)] tables: &[f32],
-    #[spirv(storage_buffer, descriptor_set = 0, binding = 7)] accumulators: &mut [Accumulator],
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 7)] nodes: &[Node],
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 8)] accumulators: &mut [Accumulator],
 ) {
     let pixel = UVec2::new(id.x, id.y);
     if pixel.x < launch.tile_size.x && pixel.y < launch.tile_size.y {
@@ -80,6 +83,8 @@ pub fn trace_paths(
                 effects,
                 rung,
                 launch,
+                has_tree,
+                nodes,
                 spheres,
                 velocities,
                 material_ids,

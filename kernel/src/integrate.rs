@@ -32,6 +32,7 @@ use crate::sampling::{
 };
 use crate::sphere::Sphere;
 use crate::surface::{Surface, unit};
+use crate::tree::{Node, is_occluded_in_tree, nearest_hit_in_tree};
 
 /// What stays the same for all paths of a launch: how the pipeline was compiled, what it was told,
 /// and the world.
@@ -43,6 +44,10 @@ pub struct Scenery<'a> {
     pub rung: u32,
     /// What the launch was told.
     pub launch: &'a PathLaunch,
+    /// 1 if the spheres stand in a tree.
+    pub has_tree: u32,
+    /// The nodes of the tree.
+    pub nodes: &'a [Node],
     /// The spheres.
     pub spheres: &'a [Sphere],
     /// How each sphere moves, in scene units per unit of time.
@@ -65,15 +70,25 @@ impl Scenery<'_> {
     }
 
     #[inline]
+    fn nearest_hit(&self, ray: &Ray, time: f32) -> Hit {
+        let (effects, rung) = (self.effects, self.rung);
+        let (spheres, velocities) = (self.spheres, self.velocities);
+        if self.has_tree == 1 {
+            nearest_hit_in_tree(effects, rung, ray, self.nodes, spheres, velocities, time)
+        } else {
+            nearest_hit_at(effects, rung, ray, spheres, velocities, time)
+        }
+    }
+
+    #[inline]
     fn is_occluded(&self, ray: &Ray, time: f32) -> bool {
-        is_occluded_at(
-            self.effects,
-            self.rung,
-            ray,
-            self.spheres,
-            self.velocities,
-            time,
-        )
+        let (effects, rung) = (self.effects, self.rung);
+        let (spheres, velocities) = (self.spheres, self.velocities);
+        if self.has_tree == 1 {
+            is_occluded_in_tree(effects, rung, ray, self.nodes, spheres, velocities, time)
+        } else {
+            is_occluded_at(effects, rung, ray, spheres, velocities, time)
+        }
     }
 }
 
@@ -236,14 +251,7 @@ fn step(scenery: &Scenery<'_>, path: &mut Path, sampler: &Sampler) -> bool {
     let (effects, launch) = (scenery.effects, scenery.launch);
     let dimension = OF_CAMERA + OF_VERTEX * path.bounces;
     let ray = Ray::within(path.origin, path.direction, f32::MIN_POSITIVE, Hit::NONE_T);
-    let hit = nearest_hit_at(
-        effects,
-        scenery.rung,
-        &ray,
-        scenery.spheres,
-        scenery.velocities,
-        path.time,
-    );
+    let hit = scenery.nearest_hit(&ray, path.time);
     let continues = effects.any(BOUNCING) & (path.bounces < launch.max_bounces);
 
     let mut surface = Surface {

@@ -14,6 +14,7 @@
 //! | [`arithmetic`] | floats whose rounding errors are kept |
 //! | [`precision`] | the ladder: ways to intersect a ray with a sphere |
 //! | [`nearest`] | the nearest hit of a ray among a slice of spheres, and whether there is any |
+//! | [`tree`] | [`tree::Node`]: boxes around spheres, so that a ray looks at few |
 //! | [`surface`] | the point and the normal at a hit |
 //! | [`camera`] | [`Camera`]: from a pixel to a ray |
 //! | [`material`] | [`Material`]: what a sphere is made of |
@@ -68,6 +69,7 @@ pub mod sphere;
 #[cfg(not(target_arch = "spirv"))]
 pub mod spirv;
 pub mod surface;
+pub mod tree;
 pub mod walk;
 
 pub use camera::Camera;

@@ -47,12 +47,10 @@ macro_rules! for_each_candidate {
                 while at < stop {
                     let $index = at;
                     let sphere = $load;
-                    if may_hit($rung, sphere, &ray) {
-                        let t = intersect($rung, sphere, &ray);
-                        if t < ray.t_max {
-                            ray.t_max = t;
-                            hit = Hit { t, sphere: at };
-                        }
+                    let t = intersect($rung, sphere, &ray);
+                    if t < ray.t_max {
+                        ray.t_max = t;
+                        hit = Hit { t, sphere: at };
                     }
                     at += 1;
                 }
@@ -76,8 +74,7 @@ macro_rules! any_candidate {
                 while (at < stop) & !found {
                     let $index = at;
                     let sphere = $load;
-                    found =
-                        may_hit($rung, sphere, ray) && intersect($rung, sphere, ray) < ray.t_max;
+                    found = intersect($rung, sphere, ray) < ray.t_max;
                     at += 1;
                 }
             }

@@ -12,7 +12,6 @@ use super::{Prepared, Progress, Settings};
 use crate::error::{Error, Result};
 use crate::film;
 use crate::render::Timings;
-use crate::scene::World;
 
 /// Rows in a band.
 const BAND_ROWS: usize = 2;
@@ -33,7 +32,7 @@ const STILL: u32 = Effects::ALL
     .to_bits();
 const ALL: u32 = Effects::ALL.to_bits();
 
-type Trace = fn(&Prepared, &PathLaunch, &World, &mut [Accumulator]);
+type Trace = fn(&Prepared, &PathLaunch, &mut [Accumulator]);
 
 /// Renders on every thread of the pool.
 ///
@@ -42,7 +41,6 @@ type Trace = fn(&Prepared, &PathLaunch, &World, &mut [Accumulator]);
 /// [`OutOfMemory`](crate::Error::OutOfMemory) if the host has no room for the image.
 pub fn render(
     prepared: &Prepared,
-    world: &World,
     settings: &Settings,
     progress: Progress<'_>,
 ) -> Result<(Vec<Accumulator>, Timings, Reached)> {
@@ -60,7 +58,7 @@ pub fn render(
             ..prepared.launch
         };
         let begun = Instant::now();
-        trace(prepared, &launch, world, &mut accumulators);
+        trace(prepared, &launch, &mut accumulators);
         let stop = budget.took(count, begun.elapsed(), || {
             Ok::<_, Error>(noise(&accumulators))
         })?;
@@ -107,14 +105,16 @@ fn trace_on<const RUNG: u32>(effects: Effects) -> Trace {
 fn trace<const EFFECTS: u32, const RUNG: u32>(
     prepared: &Prepared,
     launch: &PathLaunch,
-    world: &World,
     accumulators: &mut [Accumulator],
 ) {
+    let world = &prepared.world;
     let called = Effects::from_bits(launch.called_effects);
     let scenery = Scenery {
         effects: Effects::from_bits(EFFECTS).within(called),
         rung: RUNG,
         launch,
+        has_tree: u32::from(!prepared.nodes.is_empty()),
+        nodes: &prepared.nodes,
         spheres: &world.spheres,
         velocities: &prepared.velocities,
         material_ids: &world.material_ids,

@@ -3,6 +3,7 @@
 use std::time::{Duration, Instant};
 
 use glam::UVec2;
+use spherule_kernel::tree::Node;
 use spherule_kernel::{Accumulator, Effects, PathLaunch};
 
 use super::budget::{Budget, Reached, StoppedBy, noise};
@@ -14,12 +15,13 @@ use crate::film;
 use crate::kernel_module;
 use crate::render::Timings;
 use crate::render::pace::Pace;
-use crate::scene::World;
 
 /// The entry point's name, for messages.
 const ENTRY: &str = "trace_paths";
 /// Pixels of one tile at most: what one readback moves.
 const MAX_TILE_PIXELS: u64 = 1 << 23;
+/// Boxes and spheres that a ray looks at in a tree, for the same.
+const TESTS_IN_A_TREE: u64 = 256;
 /// Rays of one sample of one pixel, for the size of the first launch.
 const RAYS_A_SAMPLE: u64 = 4;
 
@@ -33,10 +35,11 @@ pub fn compile(gpu: &Gpu, prepared: &Prepared, settings: &Settings) -> Result<Ke
     let is_exact = prepared.compiled == prepared.shown;
     let module = kernel_module::for_rung(settings.rung)?
         .specialise(Effects::SPEC_ID, prepared.compiled.to_bits())?
-        .specialise(Effects::IS_EXACT_SPEC_ID, is_exact.into())?;
-    let mut access = vec![Access::Read; 8];
+        .specialise(Effects::IS_EXACT_SPEC_ID, is_exact.into())?
+        .specialise(Node::SPEC_ID, u32::from(!prepared.nodes.is_empty()))?;
+    let mut access = vec![Access::Read; 9];
     access[0] = Access::Uniform;
-    access[7] = Access::ReadWrite;
+    access[8] = Access::ReadWrite;
     gpu.kernel(&module, ENTRY, &access)
 }
 
@@ -49,11 +52,11 @@ pub fn compile(gpu: &Gpu, prepared: &Prepared, settings: &Settings) -> Result<Ke
 pub fn render(
     gpu: &Gpu,
     prepared: &Prepared,
-    world: &World,
     settings: &Settings,
     progress: Progress<'_>,
 ) -> Result<(Vec<Accumulator>, Timings, Reached)> {
     let started = Instant::now();
+    let world = &prepared.world;
     let kernel = compile(gpu, prepared, settings)?;
     let compile = started.elapsed();
     let size = prepared.launch.image_size;
@@ -63,6 +66,7 @@ pub fn render(
     let materials = gpu.upload("materials", &world.materials)?;
     let lights = gpu.upload("lights", &prepared.lights)?;
     let tables = gpu.upload("tables", &prepared.tables)?;
+    let nodes = gpu.upload("nodes", &prepared.nodes)?;
     let uniform = gpu.upload_uniform("launch", &prepared.launch)?;
     let limits = gpu.limits();
     let threads = u64::from(limits.max_compute_workgroups_per_dimension) * 8;
@@ -79,7 +83,12 @@ pub fn render(
         ..Timings::default()
     };
 
-    let work = world.spheres.len() as u64 * RAYS_A_SAMPLE;
+    let tests = if prepared.nodes.is_empty() {
+        world.spheres.len() as u64
+    } else {
+        TESTS_IN_A_TREE
+    };
+    let work = tests * RAYS_A_SAMPLE;
     let tracing = Instant::now();
     let mut image = film::allocate::<Accumulator>(size.x, size.y)?;
     let mut origin = UVec2::ZERO;
@@ -120,6 +129,7 @@ pub fn render(
                     materials.binding(),
                     lights.binding(),
                     tables.binding(),
+                    nodes.binding(),
                     sums.binding(),
                 ],
                 kernel.workgroups_for([tile.x, tile.y, 1]),

@@ -67,8 +67,8 @@ pub fn render(
 ) -> Result<Rendered> {
     let prepared = Prepared::new(scene, settings.effects)?;
     let (accumulators, timings, reached) = match device {
-        Device::Cpu => cpu::render(&prepared, &scene.world, settings, progress)?,
-        Device::Gpu(gpu) => gpu::render(gpu, &prepared, &scene.world, settings, progress)?,
+        Device::Cpu => cpu::render(&prepared, settings, progress)?,
+        Device::Gpu(gpu) => gpu::render(gpu, &prepared, settings, progress)?,
     };
     let pixels = accumulators
         .iter()

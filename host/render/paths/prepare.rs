@@ -7,17 +7,23 @@ use spherule_kernel::fog::Fog;
 use spherule_kernel::integrate::luminance;
 use spherule_kernel::microfacet::{ALBEDO_LEN, Albedo};
 use spherule_kernel::sky::Sky;
+use spherule_kernel::tree::Node;
 use spherule_kernel::{Effects, Light, Material, PathLaunch};
 
 use super::EffectChoice;
 use crate::error::Result;
 use crate::render::whole_image;
-use crate::scene::Scene;
 use crate::scene::surroundings::EnvironmentImage;
+use crate::scene::tree::{self, Grown};
+use crate::scene::{Scene, World};
 
 /// What the kernel is told of a scene, besides its world.
 #[derive(Clone, Debug)]
 pub struct Prepared {
+    /// The world, in the order of the tree's leaves if there is a tree.
+    pub world: World,
+    /// The nodes of the tree; empty if there is none.
+    pub nodes: Vec<Node>,
     /// The launch that covers the whole image and no samples yet.
     pub launch: PathLaunch,
     /// For each sphere, how it moves; empty if none does.
@@ -46,7 +52,12 @@ impl Prepared {
         let shown = choice.shown(called);
         let view = scene.view_or_framed();
         let lens = scene.lens;
-        let (lights, mut sky, sphere_light_probability) = lights(scene);
+        let Grown { world, nodes } =
+            tree::grow(&scene.world, lens.shutter).unwrap_or_else(|| Grown {
+                world: scene.world.clone(),
+                nodes: Vec::new(),
+            });
+        let (lights, mut sky, sphere_light_probability) = lights(scene, &world);
         if let Some(image) = scene.sky.as_ref().and_then(|sky| sky.image.as_ref()) {
             sky.environment_size = glam::UVec2::new(image.width, image.height);
         }
@@ -71,12 +82,14 @@ impl Prepared {
             ..PathLaunch::default()
         };
         let velocities = if shown.any(Effects::MOTION_BLUR) {
-            let velocities = scene.world.velocities.iter();
+            let velocities = world.velocities.iter();
             velocities.map(|velocity| velocity.extend(0.0)).collect()
         } else {
             Vec::new()
         };
         Ok(Self {
+            world,
+            nodes,
             launch,
             velocities,
             lights,
@@ -97,8 +110,7 @@ impl Prepared {
 ///
 /// The sun, the environment, and all lights in the scene together share the choice evenly; among
 /// the last, power decides.
-fn lights(scene: &Scene) -> (Vec<Light>, Sky, f32) {
-    let world = &scene.world;
+fn lights(scene: &Scene, world: &World) -> (Vec<Light>, Sky, f32) {
     let mut local: Vec<(Light, f64)> = Vec::new();
     for light in &scene.lights {
         let power = 4.0 * PI * luminance(light.intensity);
