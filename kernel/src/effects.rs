@@ -63,6 +63,15 @@ effects! {
 }
 
 impl Effects {
+    /// The effects that this build of the kernel holds at all. Every one, unless the environment
+    /// variable `SPHERULE_EFFECTS` gave a number of bits when it was compiled: then the code of the
+    /// others is deleted from the source's first translation on, which is what a specialised
+    /// pipeline is measured against.
+    pub const BUILT: Self = match option_env!("SPHERULE_EFFECTS") {
+        None => Self::ALL,
+        Some(bits) => Self(Self::ALL.0 & parse(bits)),
+    };
+
     /// The specialisation constant that holds the set that the pipeline is compiled for.
     pub const SPEC_ID: u32 = 2;
     /// The specialisation constant that is 1 where a pipeline is for scenes that call for exactly
@@ -120,4 +129,19 @@ impl Effects {
     pub const fn is_empty(self) -> bool {
         self.0 == 0
     }
+}
+
+/// A decimal number; what is no digit counts for nothing.
+const fn parse(text: &str) -> u32 {
+    let bytes = text.as_bytes();
+    let mut number: u32 = 0;
+    let mut index = 0;
+    while index < bytes.len() {
+        let digit = bytes[index].wrapping_sub(b'0');
+        if digit < 10 {
+            number = number.wrapping_mul(10).wrapping_add(digit as u32);
+        }
+        index += 1;
+    }
+    number
 }

@@ -75,7 +75,7 @@ pub fn trace_paths(
     if pixel.x < launch.tile_size.x && pixel.y < launch.tile_size.y {
         let index = (pixel.y * launch.tile_size.x + pixel.x) as usize;
         if index < accumulators.len() {
-            let mut effects = Effects::from_bits(effects);
+            let mut effects = Effects::from_bits(effects).within(Effects::BUILT);
             if is_exact == 0 {
                 effects = effects.within(Effects::from_bits(launch.called_effects));
             }

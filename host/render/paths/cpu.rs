@@ -110,7 +110,9 @@ fn trace<const EFFECTS: u32, const RUNG: u32>(
     let world = &prepared.world;
     let called = Effects::from_bits(launch.called_effects);
     let scenery = Scenery {
-        effects: Effects::from_bits(EFFECTS).within(called),
+        effects: Effects::from_bits(EFFECTS)
+            .within(Effects::BUILT)
+            .within(called),
         rung: RUNG,
         launch,
         has_tree: u32::from(!prepared.nodes.is_empty()),

@@ -59,22 +59,6 @@ pub enum Stage {
 
 impl Precision for Certified {
     #[inline]
-    fn may_hit(sphere: Sphere, ray: &Ray) -> bool {
-        let o = ray.origin - sphere.center();
-        let d = ray.direction;
-        let b = o.dot(d);
-        // The same for every sphere that the ray is tested against.
-        let inverse = 1.0 / d.dot(d);
-        let along = b * inverse;
-        let foot = o - d * along;
-        let ff = foot.dot(foot);
-        let rr = sphere.radius() * sphere.radius();
-        // As in stage 1, with o·o by Pythagoras.
-        let passes_by = ff - rr > FILTER * (2.0 * ff + b * along + rr);
-        !passes_by
-    }
-
-    #[inline]
     fn intersect(sphere: Sphere, ray: &Ray) -> f32 {
         intersect_with_stage(sphere, ray).0
     }

@@ -36,14 +36,6 @@ pub trait Precision {
     /// The smaller root in the ray's interval as a parameter along the ray, or
     /// [`Hit::NONE_T`]. A NaN anywhere is no hit.
     fn intersect(sphere: Sphere, ray: &Ray) -> f32;
-
-    /// False where [`Precision::intersect`] finds nothing, up to a rounding on the rungs that promise
-    /// nothing: what of it can be told without branches, roots or quotients, so that a loop tries
-    /// several spheres at once and looks closer at few of them.
-    #[inline]
-    fn may_hit(_sphere: Sphere, _ray: &Ray) -> bool {
-        true
-    }
 }
 
 /// The rungs by name, as hosts and specialisation constants say them.
@@ -121,26 +113,6 @@ pub fn intersect(rung: u32, sphere: Sphere, ray: &Ray) -> f32 {
         return Hit::NONE_T;
     } else {
         Textbook::intersect(sphere, ray)
-    }
-}
-
-/// [`Precision::may_hit`] of the rung with this value of [`Rung::to_u32`].
-#[inline]
-#[must_use]
-pub fn may_hit(rung: u32, sphere: Sphere, ray: &Ray) -> bool {
-    const TEXTBOOK: u32 = Rung::Textbook.to_u32();
-    const ROBUST: u32 = Rung::Robust.to_u32();
-    const CERTIFIED: u32 = Rung::Certified.to_u32();
-
-    if rung == ROBUST {
-        Robust::may_hit(sphere, ray)
-    } else if rung == CERTIFIED {
-        Certified::may_hit(sphere, ray)
-    } else if rung == TEXTBOOK {
-        Textbook::may_hit(sphere, ray)
-    } else {
-        // The other rungs' arithmetic is dear from its first step.
-        true
     }
 }
 

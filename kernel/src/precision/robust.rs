@@ -24,31 +24,21 @@ use crate::sphere::Sphere;
 #[derive(Clone, Copy, Debug)]
 pub struct Robust;
 
-/// Δ / a, and what the roots are made of besides: a, b, o·o.
-#[inline]
-fn perpendicular(sphere: Sphere, ray: &Ray) -> (f32, f32, f32, f32) {
-    let o = ray.origin - sphere.center();
-    let d = ray.direction;
-    let a = d.dot(d);
-    let b = o.dot(d);
-    // The same for every sphere that the ray is tested against.
-    let inverse = 1.0 / a;
-    let foot = o - d * (b * inverse);
-    let discriminant = sphere.radius() * sphere.radius() - foot.dot(foot);
-    (discriminant, a, b, o.dot(o))
-}
-
 impl Precision for Robust {
     #[inline]
-    fn may_hit(sphere: Sphere, ray: &Ray) -> bool {
-        perpendicular(sphere, ray).0 >= 0.0
-    }
-
-    #[inline]
     fn intersect(sphere: Sphere, ray: &Ray) -> f32 {
-        let (discriminant, a, b, oo) = perpendicular(sphere, ray);
+        let o = ray.origin - sphere.center();
+        let d = ray.direction;
+        let a = d.dot(d);
+        let b = o.dot(d);
+        // The same for every sphere that the ray is tested against.
+        let inverse = 1.0 / a;
+        let foot = o - d * (b * inverse);
+        let radius_squared = sphere.radius() * sphere.radius();
+        // Δ / a
+        let discriminant = radius_squared - foot.dot(foot);
         if discriminant >= 0.0 {
-            let c = oo - sphere.radius() * sphere.radius();
+            let c = o.dot(o) - radius_squared;
             let root = (a * discriminant).sqrt();
             // |q|, a sum of numbers that are not negative; zero only where both roots are.
             let size = b.abs() + root;

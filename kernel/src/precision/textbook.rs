@@ -22,30 +22,19 @@ use crate::sphere::Sphere;
 #[derive(Clone, Copy, Debug)]
 pub struct Textbook;
 
-/// b² − 4ac, a and b.
-#[inline]
-fn discriminant(sphere: Sphere, ray: &Ray) -> (f32, f32, f32) {
-    let from_center = ray.origin - sphere.center();
-    let a = ray.direction.dot(ray.direction);
-    let b = 2.0 * from_center.dot(ray.direction);
-    let c = from_center.dot(from_center) - sphere.radius() * sphere.radius();
-    (b * b - 4.0 * a * c, a, b)
-}
-
 impl Precision for Textbook {
     #[inline]
     fn intersect(sphere: Sphere, ray: &Ray) -> f32 {
-        let (discriminant, a, b) = discriminant(sphere, ray);
+        let from_center = ray.origin - sphere.center();
+        let a = ray.direction.dot(ray.direction);
+        let b = 2.0 * from_center.dot(ray.direction);
+        let c = from_center.dot(from_center) - sphere.radius() * sphere.radius();
+        let discriminant = b * b - 4.0 * a * c;
         if discriminant >= 0.0 {
             let root = discriminant.sqrt();
             choose_root((-b - root) / (2.0 * a), (-b + root) / (2.0 * a), ray)
         } else {
             Hit::NONE_T
         }
-    }
-
-    #[inline]
-    fn may_hit(sphere: Sphere, ray: &Ray) -> bool {
-        discriminant(sphere, ray).0 >= 0.0
     }
 }
