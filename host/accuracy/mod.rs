@@ -13,6 +13,7 @@
 //! | [`choose`] | which rung a scene calls for |
 //! | [`scene_rays`] | the rays of a scene as such a family |
 //! | [`frames`] | what each rung costs and gets right in a whole frame |
+//! | [`samples`] | the error of an image as its samples grow |
 //! | [`price`] | what a rung costs in time |
 //! | [`report`] | accuracy against time, as a page |
 //! | [`random`] | repeatable random numbers |
@@ -29,6 +30,7 @@ pub mod oracle;
 pub mod price;
 pub mod random;
 pub mod report;
+pub mod samples;
 pub mod scene_cases;
 pub mod scene_rays;
 pub mod screen;

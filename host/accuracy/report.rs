@@ -6,6 +6,7 @@ use std::fmt::Write;
 use super::frames::Frame;
 use super::measure::Measured;
 use super::price::Price;
+use super::samples::Step;
 
 /// What the page says of one rung on one family.
 #[derive(Clone, Copy, Debug)]
@@ -42,13 +43,14 @@ th{border-bottom:1px solid #999;font-weight:600}td:first-child,th:first-child{te
 code{font-size:.8em}pre{font-size:.75rem;overflow-x:auto;background:#f6f6f6;padding:.7rem}\
 @media print{body{margin:0;max-width:none}section{break-inside:avoid}}";
 
-/// The page. `frames` are those of a scene, by its name; `table` is all of it as text, for copying.
+/// The page. `frames` are those of a scene, by its name, `steps` those of its samples; `table` is all of it as text, for copying.
 #[must_use]
 pub fn page(
     device: &str,
     rays: u32,
     families: &[Family<'_>],
     frames: Option<(&str, &[Frame])>,
+    steps: &[Step],
     table: &str,
 ) -> String {
     let mut html = format!(
@@ -86,6 +88,15 @@ pub fn page(
             frame_plot(frames, "share of the pixels", |frame| {
                 frame.differing as f64 / frame.pixels.max(1) as f64
             }),
+        );
+    }
+    if !steps.is_empty() {
+        let _ = writeln!(
+            html,
+            "<section><h2>Samples</h2><figure>{}<figcaption>error against time as samples double, from 1 to {}</figcaption>\
+             </figure></section>",
+            step_plot(steps),
+            steps.iter().map(|step| step.samples).max().unwrap_or(1),
         );
     }
     let _ = write!(
@@ -186,6 +197,78 @@ fn frame_plot(frames: &[Frame], what: &str, value: impl Fn(&Frame) -> f64) -> St
     ]
     .map(|(label, at)| (label, height(at)));
     against_time(&points, "milliseconds a frame", what, &ticks)
+}
+
+/// The error of images of more and more samples against their time, a line for each rung.
+fn step_plot(steps: &[Step]) -> String {
+    let mut svg = open_svg("error of the image against time");
+    let ends = |value: &dyn Fn(&Step) -> f64| {
+        steps
+            .iter()
+            .map(value)
+            .fold((f64::MAX, 0.0_f64), |(low, high), x| {
+                (low.min(x.max(1e-9)), high.max(x.max(1e-9)))
+            })
+    };
+    let (fastest, slowest) = ends(&|step| step.milliseconds);
+    let (least, most) = ends(&|step| step.error);
+    let across =
+        |x: f64, low: f64, high: f64| (x.max(1e-9) / low).ln() / (high / low).ln().max(1e-9);
+    let place = |step: &Step| {
+        (
+            LEFT + across(step.milliseconds, fastest, slowest) * (WIDTH - LEFT - RIGHT),
+            y_of(across(step.error, least, most)),
+        )
+    };
+    for error in [least, (least * most).sqrt(), most] {
+        axis_line(
+            &mut svg,
+            &format!("{:.2} %", 100.0 * error),
+            y_of(across(error, least, most)),
+        );
+    }
+    for time in [fastest, (fastest * slowest).sqrt(), slowest] {
+        // Writing to a String cannot fail.
+        let _ = write!(
+            svg,
+            "<text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{time:.3}</text>",
+            LEFT + across(time, fastest, slowest) * (WIDTH - LEFT - RIGHT),
+            HEIGHT - BOTTOM + 16.0,
+        );
+    }
+    let _ = write!(
+        svg,
+        "<text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"middle\">milliseconds</text>",
+        0.5 * (LEFT + WIDTH - RIGHT),
+        HEIGHT - 8.0,
+    );
+    let mut rungs: Vec<&str> = steps.iter().map(|step| step.rung).collect();
+    rungs.dedup();
+    for (index, rung) in rungs.iter().enumerate() {
+        let color = COLORS[(index + 1) % COLORS.len()];
+        let mut path = String::new();
+        for step in steps.iter().filter(|step| step.rung == *rung) {
+            let (x, y) = place(step);
+            let _ = write!(
+                path,
+                "{}{x:.1} {y:.1}",
+                if path.is_empty() { "M" } else { " L" }
+            );
+            let _ = write!(
+                svg,
+                "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"3\" fill=\"{color}\"/>"
+            );
+        }
+        let _ = write!(
+            svg,
+            "<path d=\"{path}\" fill=\"none\" stroke=\"{color}\" stroke-width=\"1.6\"/>\
+             <text x=\"{:.1}\" y=\"{:.1}\" style=\"fill:{color}\">{}</text>",
+            WIDTH - RIGHT + 8.0,
+            TOP + 16.0 * (index + 1) as f64,
+            escape(rung),
+        );
+    }
+    svg + "</svg>"
 }
 
 /// Points against time, both lower the better, with the line that joins those that no other beats in

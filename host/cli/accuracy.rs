@@ -14,9 +14,10 @@ use crate::accuracy::families::Family;
 use crate::accuracy::frames::{self, Frame};
 use crate::accuracy::measure::{Escalation, Measured, intersect_all, judge, self_hits};
 use crate::accuracy::price::{self, Price};
+use crate::accuracy::samples::{self, Step};
 use crate::accuracy::{report, scene_rays};
 use crate::device::Device;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, SceneError};
 use crate::scene::Scene;
 
 /// Everything that was measured; the JSON output is this.
@@ -30,6 +31,8 @@ pub(super) struct Report {
     families: Vec<FamilyReport>,
     #[serde(skip_serializing_if = "Option::is_none")]
     frames: Option<FramesReport>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    samples: Vec<Step>,
 }
 
 /// Whole frames of a scene file.
@@ -60,6 +63,8 @@ struct RungReport {
 }
 
 const SEED: u64 = 2026;
+/// The most samples of `--samples`; the reference has more.
+const MOST_SAMPLES: u32 = 256;
 
 pub(super) fn run(arguments: &AccuracyArguments) -> Result<ExitCode> {
     let (device, why) = Device::open(&arguments.device)?;
@@ -75,7 +80,27 @@ pub(super) fn run(arguments: &AccuracyArguments) -> Result<ExitCode> {
     }
     let mut families = Vec::new();
     let mut frames = None;
+    let mut steps = Vec::new();
     match &arguments.scene {
+        _ if arguments.samples.is_some() => {
+            let path = arguments.samples.as_deref().unwrap_or(Path::new(""));
+            let mut scene = Scene::load(path)?;
+            if let Some(size) = arguments.size {
+                (scene.width, scene.height) = (size.width, size.height);
+            }
+            if scene.effects().is_empty() {
+                return Err(SceneError::without_place(
+                    path,
+                    "the scene calls for no effect, so that one ray a pixel shows all of it",
+                    "give a scene with light or samples, for example scenes/soft-light.toml, or ask for its frames by --scene",
+                )
+                .into());
+            }
+            // The others are between these two in time and in error.
+            let ends = [Rung::Robust, Rung::Double, Rung::Certified];
+            let rungs: Vec<Rung> = ends.into_iter().filter(|r| rungs.contains(r)).collect();
+            steps = samples::measure(&device, &rungs, &scene, MOST_SAMPLES)?;
+        }
         Some(Subject::Scene(path)) => {
             let mut scene = Scene::load(path)?;
             if let Some(size) = arguments.size {
@@ -107,6 +132,7 @@ pub(super) fn run(arguments: &AccuracyArguments) -> Result<ExitCode> {
         refused,
         families,
         frames,
+        samples: steps,
     };
     if let Some(path) = &arguments.json {
         let text = serde_json::to_string_pretty(&report).unwrap_or_default() + "\n";
@@ -156,7 +182,38 @@ fn write(path: &Path, text: &str) -> Result<()> {
     })
 }
 
+fn steps_table(report: &Report) -> String {
+    let mut text = format!(
+        "{}\n\n{:12} {:>8} {:>14} {:>10} {:>10} {:>10} {:>12}\n",
+        report.device, "rung", "samples", "ms", "error", "estimate", "ꟻLIP", "error² × ms",
+    );
+    for (index, step) in report.samples.iter().enumerate() {
+        let is_first = index == 0 || report.samples[index - 1].rung != step.rung;
+        // Writing to a String cannot fail.
+        let _ = writeln!(
+            text,
+            "{:12} {:>8} {:>14.3} {:>8.3} % {:>8.3} % {:>10.5} {:>12.3e}",
+            if is_first { step.rung } else { "" },
+            step.samples,
+            step.milliseconds,
+            100.0 * step.error,
+            100.0 * step.estimate,
+            step.flip,
+            step.error * step.error * step.milliseconds,
+        );
+    }
+    text.push_str(
+        "\nerror: root mean square of the luminance against many more samples of another seed, over the mean.\n\
+         estimate: what the render itself says, taking its stratified samples for independent ones. error² × ms\n\
+         stays the same where the error falls as 1/√N, and falls where it does better.\n",
+    );
+    text
+}
+
 fn table(report: &Report) -> String {
+    if !report.samples.is_empty() {
+        return steps_table(report);
+    }
     let mut text = format!(
         "{}, {} rays a family\n\n{:9} {:12} {:>17} {:>9} {:>12} {:>11} {:>7} {:>7} {:>8} {:>8} {:>8}\n",
         report.device,
@@ -292,6 +349,7 @@ fn page(report: &Report) -> String {
             .frames
             .as_ref()
             .map(|frames| (frames.scene.as_str(), frames.rungs.as_slice())),
+        &report.samples,
         &table(report),
     )
 }

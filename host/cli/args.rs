@@ -32,6 +32,8 @@ pub(super) enum Command {
     Check(CheckArguments),
     /// Measure what each rung of precision gets right, and what it costs in time
     Accuracy(AccuracyArguments),
+    /// Say which effects a scene calls for, by what, and what each costs here
+    Explain(ExplainArguments),
 }
 
 #[derive(Debug, Args)]
@@ -139,8 +141,12 @@ pub(super) struct AccuracyArguments {
     #[arg(long, value_name = "FAMILY|FILE", value_parser = subject)]
     pub(super) scene: Option<Subject>,
 
+    /// Measure the error of this scene's image as its samples grow, and what they cost
+    #[arg(long, value_name = "SCENE.toml", conflicts_with = "scene")]
+    pub(super) samples: Option<PathBuf>,
+
     /// The size of a scene file's frames in pixels [default: the scene's]
-    #[arg(long, value_name = "WIDTHxHEIGHT", requires = "scene")]
+    #[arg(long, value_name = "WIDTHxHEIGHT")]
     pub(super) size: Option<Size>,
 
     /// Write a report to look at: one HTML page with its plots in it
@@ -150,6 +156,36 @@ pub(super) struct AccuracyArguments {
     /// Write the numbers as JSON; - writes to stdout
     #[arg(long, value_name = "FILE.json")]
     pub(super) json: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct ExplainArguments {
+    /// The scene (.toml) or molecule (.pdb, .ent, .xyz)
+    pub(super) input: PathBuf,
+
+    /// What to measure: auto (a real GPU, else the CPU), gpu, cpu, or a part of an adapter's name
+    #[arg(long, value_name = "auto|gpu|cpu|NAME", default_value = "auto")]
+    pub(super) device: DeviceChoice,
+
+    /// How a ray is intersected with a sphere
+    #[arg(long, value_enum, default_value = "auto")]
+    pub(super) precision: Precision,
+
+    /// The image's size in pixels [default: the scene's]
+    #[arg(long, value_name = "WxH")]
+    pub(super) size: Option<Size>,
+
+    /// Samples a pixel [default: the scene's]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_SAMPLES)))]
+    pub(super) samples: Option<u32>,
+
+    /// Only say what is called for; render nothing
+    #[arg(long)]
+    pub(super) no_costs: bool,
+
+    /// Print JSON
+    #[arg(long)]
+    pub(super) json: bool,
 }
 
 /// What `accuracy` measures.

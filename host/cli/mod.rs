@@ -6,6 +6,7 @@ mod accuracy;
 mod args;
 mod check;
 mod devices;
+mod explain;
 mod progress;
 mod render;
 mod report;
@@ -32,6 +33,7 @@ pub fn main() -> ExitCode {
         Command::Devices(arguments) => devices::run(&arguments),
         Command::Check(arguments) => check::run(&arguments),
         Command::Accuracy(arguments) => accuracy::run(&arguments),
+        Command::Explain(arguments) => explain::run(&arguments),
     };
     match done {
         Ok(code) => code,

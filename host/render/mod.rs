@@ -5,8 +5,10 @@
 //! | [`cpu`] | the kernel's functions over bands of rows, on every thread |
 //! | [`gpu`] | the kernel's entry point over tiles, within a device's limits |
 //! | [`paths`] | light paths, for scenes that call for effects |
+//! | [`cost`] | the time of a frame by pipelines of more or fewer effects |
 //! | [`pace`] | how much work one launch gets |
 
+pub mod cost;
 pub mod cpu;
 pub mod gpu;
 pub mod pace;
