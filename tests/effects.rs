@@ -12,7 +12,7 @@ use spherule::kernel::integrate::luminance;
 use spherule::kernel::{Effects, Material, Rung, Sphere};
 use spherule::render::paths::{EffectChoice, StoppedBy};
 use spherule::render::{QUIET, Settings, render};
-use spherule::scene::surroundings::{Surroundings, Tonemap};
+use spherule::scene::surroundings::{EnvironmentImage, PointLight, Sun, Surroundings, Tonemap};
 use spherule::scene::{View, World};
 use spherule::{Device, Image, Scene};
 
@@ -197,6 +197,184 @@ fn a_gradient_gives_its_closed_form() {
     assert!(
         (mean - expected).abs() <= 4.0 * error + 1e-4,
         "{mean} ± {error}, {expected}"
+    );
+}
+
+/// A white floor, seen from above, and nothing that shines.
+fn floor() -> Scene {
+    let mut scene = floor_under_lamp(1e-3, 1e3);
+    scene.world.spheres.truncate(1);
+    scene.world.material_ids.truncate(1);
+    scene
+}
+
+/// A sun of irradiance E at the angle θ from the zenith gives E cos θ, a point of intensity I at the
+/// distance d gives I cos θ / d²; both with and without extent.
+#[test]
+fn suns_and_points_give_their_closed_forms() {
+    let direction = Vec3::new(0.3, 0.8, -0.5).normalize();
+    for size in [0.0, 0.5, 20.0] {
+        let mut scene = floor();
+        scene.sky = Some(Surroundings {
+            horizon: Vec3::ZERO,
+            zenith: Vec3::ZERO,
+            sun: Some(Sun {
+                direction,
+                size,
+                irradiance: Vec3::splat(2.0),
+            }),
+            image: None,
+        });
+        let expected = 2.0 * f64::from(direction.y) / std::f64::consts::PI;
+        let (mean, error) = mean(&on_cpu(&scene));
+        assert!(
+            (mean - expected).abs() <= 4.0 * error + 2e-4,
+            "{size}: {mean} ± {error}, {expected}"
+        );
+    }
+    let mut scene = floor();
+    scene.lights.push(PointLight {
+        position: direction * 3.0,
+        intensity: Vec3::splat(5.0),
+    });
+    scene.lights.push(PointLight {
+        position: Vec3::Y * 2.0,
+        intensity: Vec3::splat(0.5),
+    });
+    let expected = (5.0 * f64::from(direction.y) / 9.0 + 0.125) / std::f64::consts::PI;
+    let (mean, error) = mean(&on_cpu(&scene));
+    assert!(
+        (mean - expected).abs() <= 4.0 * error + 1e-4,
+        "{mean} ± {error}, {expected}"
+    );
+}
+
+/// One texel of light in a dark image gives the floor the integral of the cosine over it.
+#[test]
+fn an_environment_gives_its_closed_form() {
+    let (width, height) = (64_u32, 32_u32);
+    for (row, column) in [(3, 10), (9, 63), (14, 31)] {
+        let mut texels = vec![Vec3::ZERO; (width * height) as usize];
+        texels[(row * width + column) as usize] = Vec3::splat(100.0);
+        let mut scene = floor();
+        scene.sky = Some(Surroundings {
+            horizon: Vec3::ZERO,
+            zenith: Vec3::ZERO,
+            sun: None,
+            image: Some(EnvironmentImage {
+                width,
+                height,
+                texels,
+            }),
+        });
+        scene.sampling.samples = Some(1024);
+        let sine2 = |row: u32| {
+            (std::f64::consts::PI * f64::from(row) / f64::from(height))
+                .sin()
+                .powi(2)
+        };
+        let integral =
+            0.5 * (sine2(row + 1) - sine2(row)) * 2.0 * std::f64::consts::PI / f64::from(width);
+        let expected = 100.0 * integral / std::f64::consts::PI;
+        let (mean, error) = mean(&on_cpu(&scene));
+        assert!(
+            (mean - expected).abs() <= 4.0 * error + 2e-3 * expected,
+            "{row} {column}: {mean} ± {error}, {expected}"
+        );
+    }
+}
+
+/// An image of the surroundings is read from a file, and shows where it says.
+#[test]
+fn an_environment_is_read_and_seen_where_it_is() {
+    let directory = tempfile::tempdir().expect("a directory");
+    let mut pixels = image::Rgb32FImage::from_pixel(8, 4, image::Rgb([0.25, 0.25, 0.25]));
+    // In the middle, just below the horizon: −z. And right of it: +x.
+    pixels.put_pixel(4, 2, image::Rgb([4.0, 0.0, 0.0]));
+    pixels.put_pixel(6, 2, image::Rgb([0.0, 4.0, 0.0]));
+    let path = directory.path().join("sky.exr");
+    pixels.save(&path).expect("an image");
+    let text = "[image]\nwidth = 9\nheight = 9\nsamples = 1\n[sky]\nimage = \"sky.exr\"\nstrength = 0.5\n\
+        [[sphere]]\ncenter = [0, 50, 0]\nradius = 1\n";
+    for (target, color) in [
+        ("[0.3, -0.4, -1]", Vec3::new(2.0, 0.0, 0.0)),
+        ("[1, -0.4, 0.3]", Vec3::new(0.0, 2.0, 0.0)),
+        ("[0, 0.5, -1]", Vec3::splat(0.125)),
+    ] {
+        let text =
+            format!("{text}[camera]\neye = [0, 0, 0]\ntarget = {target}\nvertical_fov = 1\n");
+        let scene = spherule::scene::toml_file::parse(&directory.path().join("s.toml"), text);
+        let image = on_cpu(&scene.expect("a scene"));
+        assert_eq!(
+            image.pixel(4, 4).expect("a pixel").color(),
+            color,
+            "{target}"
+        );
+    }
+    image::RgbImage::new(8, 4)
+        .save(directory.path().join("sky.png"))
+        .expect("an image");
+    let text = "[sky]\nimage = \"sky.png\"\n[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\n";
+    let refused = spherule::scene::toml_file::parse(&directory.path().join("s.toml"), text.into());
+    assert!(
+        refused
+            .expect_err("8 bits")
+            .to_string()
+            .contains("no linear light")
+    );
+}
+
+/// A glowing sphere that crosses the view covers a pixel for the share of the time that it takes.
+#[test]
+fn motion_blur_is_the_share_of_the_time() {
+    let mut scene = furnace(Material::emissive(Vec3::ONE));
+    scene.sky = None;
+    scene.background = Vec3::ZERO;
+    // From −4 to 4 while the shutter is open; the middle is covered while it is within ±1.
+    scene.world.spheres.clear();
+    scene.world.material_ids.clear();
+    scene
+        .world
+        .add_moving(Sphere::new(Vec3::ZERO, 1.0), 0, Vec3::X * 8.0);
+    scene.lens.shutter = (-0.5, 0.5);
+    scene.sampling.samples = Some(1024);
+    (scene.width, scene.height) = (3, 3);
+    scene.view = scene.view.map(|view| View {
+        vertical_fov: 0.01,
+        ..view
+    });
+    let image = on_cpu(&scene);
+    let middle = f64::from(image.pixel(1, 1).expect("a pixel").color().x);
+    assert!((middle - 0.25).abs() < 0.005, "{middle}");
+}
+
+/// What is in focus stays sharp, what is not spreads over its circle of confusion.
+#[test]
+fn a_lens_blurs_what_is_out_of_focus() {
+    let mut scene = furnace(Material::emissive(Vec3::ONE));
+    scene.sky = None;
+    scene.background = Vec3::ZERO;
+    scene.world.spheres = vec![Sphere::new(Vec3::ZERO, 0.01)];
+    scene.lens.aperture = 1.0;
+    scene.sampling.samples = Some(4096);
+    (scene.width, scene.height) = (1, 1);
+    scene.view = scene.view.map(|view| View {
+        vertical_fov: 0.01,
+        ..view
+    });
+    let seen = |focus| {
+        let mut scene = scene.clone();
+        scene.lens.focus_distance = Some(focus);
+        f64::from(on_cpu(&scene).pixels()[0].color().x)
+    };
+    assert_eq!(seen(5.0), 1.0);
+    // At twice the distance of the ball the lens sees it through the share of its area that the
+    // ball's cone, widened by two, covers: (0.01 · 2)² of 0.5².
+    let expected = (0.02_f64 / 0.5).powi(2);
+    assert!(
+        (seen(10.0) - expected).abs() < 0.2 * expected,
+        "{}",
+        seen(10.0)
     );
 }
 

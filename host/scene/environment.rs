@@ -30,6 +30,15 @@ pub fn load(path: &Path, strength: f32) -> Result<EnvironmentImage> {
             "give an equirectangular image as .hdr or .exr",
         )
     })?;
+    if !matches!(
+        decoded.color(),
+        image::ColorType::Rgb32F | image::ColorType::Rgba32F
+    ) {
+        return Err(wrong(
+            "holds no linear light: its channels are not floats".into(),
+            "give an equirectangular image as .hdr or .exr",
+        ));
+    }
     let linear = decoded.to_rgb32f();
     let (width, height) = linear.dimensions();
     let texels: Vec<Vec3> = linear

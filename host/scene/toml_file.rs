@@ -957,6 +957,185 @@ radius = 100
         }
     }
 
+    /// Each new mistake in a scene of its own: what the scene has besides a sphere, and a word of
+    /// the message.
+    #[test]
+    fn each_key_of_the_effects_refuses_what_it_cannot_be() {
+        let cases = [
+            ("[image]\nsamples = 0", "samples = 0"),
+            ("[image]\nsamples = 99999999", "99999999"),
+            ("[image]\nmax_bounces = -1", "max_bounces = -1"),
+            ("[image]\nambient_occlusion = 0", "ambient_occlusion = 0"),
+            ("[image]\nseed = -5", "seed = -5"),
+            ("[image]\nexposure = 100", "exposure = 100"),
+            ("[image]\nexposure = nan", "exposure = NaN"),
+            ("[image]\ntonemap = \"film\"", "unknown variant"),
+            ("[image]\ntransparent = 1", "invalid type"),
+            (
+                "[camera]\neye = [0, 0, 9]\ntarget = [0, 0, 0]\naperture = -1",
+                "aperture = -1",
+            ),
+            (
+                "[camera]\neye = [0, 0, 9]\ntarget = [0, 0, 0]\nfocus_distance = 0",
+                "focus_distance = 0",
+            ),
+            (
+                "[camera]\neye = [0, 0, 9]\ntarget = [0, 0, 0]\nshutter = [1, 0]",
+                "not a pair of times",
+            ),
+            (
+                "[camera]\neye = [0, 0, 9]\ntarget = [0, 0, 0]\nshutter = [1]",
+                "not a pair of times",
+            ),
+            ("[materials.m]\nkind = \"diffuse\"", "has no color"),
+            (
+                "[materials.m]\nkind = \"diffuse\"\ncolor = [1, 1, 1]\nroughness = 0.5",
+                "has no roughness",
+            ),
+            (
+                "[materials.m]\nkind = \"glass\"\ncolor = [1, 1, 1]",
+                "has no color",
+            ),
+            ("[materials.m]\nkind = \"glass\"\nindex = 0", "index = 0"),
+            (
+                "[materials.m]\nkind = \"glass\"\nabsorption = [-1, 0, 0]",
+                "below zero",
+            ),
+            (
+                "[materials.m]\nkind = \"glass\"\nthickness = 0",
+                "thickness = 0",
+            ),
+            (
+                "[materials.m]\nkind = \"glass\"\nthickness = 2\n[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\nmaterial = \"m\"",
+                "leaves no hollow",
+            ),
+            (
+                "[materials.m]\nkind = \"metal\"\ncolor = [1, 1, 1]\nroughness = 1.5",
+                "roughness = 1.5",
+            ),
+            (
+                "[materials.m]\nkind = \"metal\"\ncolor = [2, 1, 1]",
+                "above one",
+            ),
+            (
+                "[materials.m]\nkind = \"emissive\"\ncolor = [1, 1, 1]\nstrength = -1",
+                "strength = -1",
+            ),
+            (
+                "[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\nvelocity = [1, 0]",
+                "2 numbers",
+            ),
+            (
+                "[[light]]\nposition = [0, 9, 0]",
+                "missing field `intensity`",
+            ),
+            (
+                "[[light]]\nposition = [0, 9, 0]\nintensity = [-1, 0, 0]",
+                "below zero",
+            ),
+            (
+                "[[light]]\nposition = [0, 9, 0]\nintensity = [1, 1, 1]\nradius = -1",
+                "radius = -1",
+            ),
+            (
+                "[[light]]\nposition = [0, 9, 0]\nintensity = [1e18, 1, 1]\nradius = 1e-15",
+                "too bright",
+            ),
+            ("[sky]\nhorizon = [-1, 0, 0]", "below zero"),
+            ("[sky]\nsun_direction = [0, 0, 0]", "sun_direction is zero"),
+            ("[sky]\nsun_irradiance = [1, 1, 1]", "no direction"),
+            (
+                "[sky]\nsun_direction = [0, 1, 0]\nsun_size = 181",
+                "sun_size = 181",
+            ),
+            ("[sky]\nimage = \"no.hdr\"", "cannot be opened"),
+            ("[sky]\nstrength = -1", "strength = -1"),
+            ("[fog]\nalbedo = [1, 1, 1]", "missing field `extinction`"),
+            ("[fog]\nextinction = 0", "extinction = 0"),
+            ("[fog]\nextinction = 1\nalbedo = [2, 0, 0]", "above one"),
+            ("[fog]\nextinction = 1\nanisotropy = 1", "anisotropy = 1"),
+            ("[fog]\nextinction = 1\nradius = 0", "radius = 0"),
+        ];
+        for (text, word) in cases {
+            let text = format!("{text}\n[[sphere]]\ncenter = [0, 0, -3]\nradius = 0.5\n");
+            let Err(Error::Scene(error)) = read(&text) else {
+                panic!("{text} is read")
+            };
+            assert!(error.message.contains(word), "{text}: {}", error.message);
+            assert!(!error.help.is_empty() && error.place.is_some(), "{text}");
+        }
+    }
+
+    /// The reader, the schema and the page of keys know the same keys.
+    #[test]
+    fn the_schema_and_the_docs_list_every_key() {
+        let schema: serde_json::Value =
+            serde_json::from_str(include_str!("../../scenes/scene.schema.json")).expect("JSON");
+        let page = include_str!("../../docs/scenes.md");
+        let root = &schema["properties"];
+        let tables = [
+            ("", &schema["properties"], "[zzz]\n"),
+            (
+                "[image]",
+                &root["image"]["properties"],
+                "[image]\nzzz = 1\n",
+            ),
+            (
+                "[camera]",
+                &root["camera"]["properties"],
+                "[camera]\nzzz = 1\n",
+            ),
+            (
+                "[materials.NAME]",
+                &root["materials"]["additionalProperties"]["properties"],
+                "[materials.m]\nzzz = 1\n",
+            ),
+            (
+                "[[sphere]]",
+                &root["sphere"]["items"]["properties"],
+                "[[sphere]]\nzzz = 1\n",
+            ),
+            (
+                "[[light]]",
+                &root["light"]["items"]["properties"],
+                "[[light]]\nzzz = 1\n",
+            ),
+            ("[sky]", &root["sky"]["properties"], "[sky]\nzzz = 1\n"),
+            ("[fog]", &root["fog"]["properties"], "[fog]\nzzz = 1\n"),
+            (
+                "[particles]",
+                &root["particles"]["properties"],
+                "[particles]\nzzz = 1\n",
+            ),
+        ];
+        for (name, properties, wrong) in tables {
+            let Err(Error::Scene(error)) = read(wrong) else {
+                panic!("{wrong} is read")
+            };
+            // serde names the fields that it expected.
+            let expected = error.message.split_once("expected").expect("names").1;
+            let mut reader: Vec<&str> = expected.split('`').skip(1).step_by(2).collect();
+            let mut known: Vec<&str> = properties
+                .as_object()
+                .expect("keys")
+                .keys()
+                .map(String::as_str)
+                .collect();
+            reader.sort_unstable();
+            known.sort_unstable();
+            assert_eq!(reader, known, "{name}");
+            if !name.is_empty() {
+                let section = page
+                    .split("\n## ")
+                    .find(|part| part.starts_with(&format!("`{name}`")));
+                let section = section.unwrap_or_else(|| panic!("docs/scenes.md has no {name}"));
+                for key in known {
+                    assert!(section.contains(&format!("| `{key}` |")), "{name} {key}");
+                }
+            }
+        }
+    }
+
     #[test]
     fn a_scene_without_spheres_is_refused() {
         let error = read("[image]\nwidth = 3").expect_err("no spheres");

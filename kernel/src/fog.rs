@@ -94,3 +94,32 @@ impl Fog {
 }
 
 const _: () = assert!(size_of::<Fog>() == 48);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The phase function integrates to one, and its mean cosine is g.
+    #[test]
+    fn the_phase_function_is_normalised() {
+        for anisotropy in [-0.7, 0.0, 0.3, 0.9] {
+            let fog = Fog {
+                anisotropy,
+                ..Fog::default()
+            };
+            const STEPS: u32 = 100_000;
+            let (mut sum, mut mean) = (0.0, 0.0);
+            for step in 0..STEPS {
+                let cosine = 2.0 * (step as f32 + 0.5) / STEPS as f32 - 1.0;
+                let part = f64::from(fog.phase(cosine)) * f64::from(TAU) * 2.0 / f64::from(STEPS);
+                sum += part;
+                mean += part * f64::from(cosine);
+            }
+            assert!((sum - 1.0).abs() < 1e-3, "{anisotropy}: {sum}");
+            assert!(
+                (mean - f64::from(anisotropy)).abs() < 1e-3,
+                "{anisotropy}: {mean}"
+            );
+        }
+    }
+}

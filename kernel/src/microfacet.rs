@@ -249,3 +249,95 @@ mod albedo {
 
 #[cfg(not(target_arch = "spirv"))]
 pub use albedo::Albedo;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ALPHAS: [f32; 4] = [0.05, 0.2, 0.5, 1.0];
+
+    fn direction(cosine: f32, angle: f32) -> Vec3 {
+        let sine = (1.0 - cosine * cosine).sqrt();
+        Vec3::new(sine * angle.cos(), sine * angle.sin(), cosine)
+    }
+
+    /// The integral over the upper hemisphere, on a grid that is fine where a lobe may be.
+    fn integrate(f: impl Fn(Vec3) -> f64) -> f64 {
+        const ROWS: u32 = 600;
+        const COLUMNS: u32 = 600;
+        let mut sum = 0.0;
+        for row in 0..ROWS {
+            for column in 0..COLUMNS {
+                let cosine = (row as f32 + 0.5) / ROWS as f32;
+                let angle = TAU * (column as f32 + 0.5) / COLUMNS as f32;
+                sum += f(direction(cosine, angle));
+            }
+        }
+        sum * f64::from(TAU) / f64::from(ROWS * COLUMNS)
+    }
+
+    /// Light takes the same way back: f(a, b) = f(b, a).
+    #[test]
+    fn rough_metal_is_reciprocal() {
+        let table = Albedo::table();
+        let color = Vec3::new(0.9, 0.5, 0.2);
+        for alpha in ALPHAS {
+            for (a, b) in [(0.9, 0.3), (0.5, 0.6), (0.1, 0.95)] {
+                let (a, b) = (direction(a, 0.3), direction(b, 2.0));
+                let there = RoughMetal::new(color, alpha, a, &table)
+                    .evaluate(b, &table)
+                    .0
+                    / b.z;
+                let back = RoughMetal::new(color, alpha, b, &table)
+                    .evaluate(a, &table)
+                    .0
+                    / a.z;
+                let size = there.max_element().max(1e-6);
+                assert!(
+                    (there - back).abs().max_element() < 1e-4 * size,
+                    "{there} {back}"
+                );
+            }
+        }
+    }
+
+    /// The density integrates to the share of samples that leave upwards; the rest went below.
+    #[test]
+    fn the_density_is_that_of_the_samples() {
+        let table = Albedo::table();
+        for alpha in &ALPHAS[1..] {
+            for cosine in [0.95, 0.4] {
+                let metal = RoughMetal::new(Vec3::ONE, *alpha, direction(cosine, 0.0), &table);
+                let integral = integrate(|to| f64::from(metal.evaluate(to, &table).1));
+                let mut above = 0;
+                const COUNT: u32 = 20_000;
+                for sample in 0..COUNT {
+                    let sampler = crate::random::Sampler::new(5, glam::UVec2::ZERO, sample);
+                    let to = metal.sample(sampler.pair(0), sampler.single(1));
+                    above += u32::from(to.z > 0.0);
+                }
+                let share = f64::from(above) / f64::from(COUNT);
+                assert!(
+                    (integral - share).abs() < 0.01,
+                    "{alpha} {cosine}: {integral} {share}"
+                );
+            }
+        }
+    }
+
+    /// White metal reflects all light, by quadrature.
+    #[test]
+    fn white_metal_loses_nothing() {
+        let table = Albedo::table();
+        for alpha in &ALPHAS[1..] {
+            for cosine in [0.95, 0.6, 0.3] {
+                let metal = RoughMetal::new(Vec3::ONE, *alpha, direction(cosine, 0.0), &table);
+                let reflected = integrate(|to| f64::from(metal.evaluate(to, &table).0.x));
+                assert!(
+                    (reflected - 1.0).abs() < 6e-3,
+                    "{alpha} {cosine}: {reflected}"
+                );
+            }
+        }
+    }
+}
