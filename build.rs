@@ -46,6 +46,8 @@ type Result<T> = std::result::Result<T, Box<dyn Error>>;
 
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
+    // Deletes effects from the kernel; see its `effects.rs`.
+    println!("cargo::rerun-if-env-changed=SPHERULE_EFFECTS");
     if let Err(error) = run() {
         println!("cargo::error={error}");
         std::process::exit(1);

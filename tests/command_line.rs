@@ -464,3 +464,118 @@ fn auto_precision_says_what_it_took_and_why() {
             );
     }
 }
+
+#[test]
+fn explain_says_what_calls_for_each_effect_and_what_it_costs() {
+    let scene = "scenes/glass-marble.toml";
+    let size = ["--device", "cpu", "--size", "16x9", "--samples", "2"];
+    spherule()
+        .args(["explain", scene])
+        .args(size)
+        .assert()
+        .success()
+        .stdout(
+            contains("glass")
+                .and(contains("material `green` is of kind glass"))
+                .and(contains("Not called for, and not in the pipeline"))
+                .and(contains("fog")),
+        );
+    let output = spherule()
+        .args(["explain", scene, "--json"])
+        .args(size)
+        .assert()
+        .success();
+    let report: serde_json::Value =
+        serde_json::from_slice(&output.get_output().stdout).expect("JSON");
+    let effects = report["effects"].as_array().expect("effects");
+    assert_eq!(effects.len(), 17);
+    let called = effects.iter().filter(|effect| effect["by"].is_string());
+    for effect in called.clone() {
+        let cost = effect["without"]["milliseconds"].as_f64();
+        assert!(cost.expect("a time") > 0.0, "{effect}");
+    }
+    assert_eq!(
+        called.count(),
+        report["effect_bits"].as_u64().expect("bits").count_ones() as usize
+    );
+    assert!(report["frame"]["all_effects"]["milliseconds"].as_f64() > Some(0.0));
+}
+
+#[test]
+fn sampling_is_asked_for_and_reported() {
+    let dir = temporary();
+    let out = dir.path().join("out.png");
+    let render = |scene: &str, options: &[&str]| {
+        let mut command = spherule();
+        command
+            .args(["render", scene, "--device", "cpu", "--size", "24x16", "-o"])
+            .arg(&out)
+            .args(options);
+        command
+    };
+    let box_scene = "scenes/box.toml";
+    render(
+        box_scene,
+        &["--samples", "4", "--max-bounces", "2", "--seed", "7"],
+    )
+    .assert()
+    .success()
+    .stderr(contains("4 samples a pixel, noise"));
+    let output = render(box_scene, &["--noise", "0.5", "--stats", "-"])
+        .assert()
+        .success();
+    let stats: serde_json::Value =
+        serde_json::from_slice(&output.get_output().stdout).expect("JSON");
+    assert_eq!(stats["sampling"]["stopped_by"], "noise");
+    assert!(stats["sampling"]["noise"].as_f64() <= Some(0.5));
+    assert!(stats["effects"].as_array().expect("effects").len() > 4);
+    render(box_scene, &["--effects", "soft-shadow"])
+        .assert()
+        .code(2)
+        .stderr(contains("there is no effect `soft-shadow`").and(contains("soft-shadows")));
+    render(box_scene, &["--noise", "0.1", "--check"])
+        .assert()
+        .code(2)
+        .stderr(contains("cannot be used with"));
+    render("scenes/c60.xyz", &["--time-limit", "1"])
+        .assert()
+        .success()
+        .stderr(contains("nothing in this image is sampled"));
+}
+
+#[test]
+fn accuracy_measures_scenes_and_samples() {
+    spherule()
+        .args([
+            "accuracy",
+            "--device",
+            "cpu",
+            "--rays",
+            "1000",
+            "--size",
+            "32x18",
+            "--scene",
+            "scenes/c60.xyz",
+        ])
+        .assert()
+        .success()
+        .stdout(contains("ms a frame").and(contains("scenes/c60.xyz: 60 spheres")));
+    spherule()
+        .args([
+            "accuracy",
+            "--device",
+            "cpu",
+            "--size",
+            "8x6",
+            "--samples",
+            "scenes/box.toml",
+        ])
+        .assert()
+        .success()
+        .stdout(contains("error² × ms").and(contains("256")));
+    spherule()
+        .args(["accuracy", "--samples", "scenes/two-spheres.toml"])
+        .assert()
+        .code(2)
+        .stderr(contains("calls for no effect"));
+}

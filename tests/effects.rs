@@ -13,7 +13,7 @@ use spherule::kernel::{Effects, Material, Rung, Sphere};
 use spherule::render::paths::{EffectChoice, StoppedBy};
 use spherule::render::{QUIET, Settings, render};
 use spherule::scene::surroundings::{EnvironmentImage, PointLight, Sun, Surroundings, Tonemap};
-use spherule::scene::{View, World};
+use spherule::scene::{MAX_SAMPLES, View, World};
 use spherule::{Device, Image, Scene};
 
 /// The scenes of the gallery, small.
@@ -496,6 +496,77 @@ fn effects_that_are_not_called_for_change_nothing() {
     }
 }
 
+/// A scene that calls for nothing is drawn by one ray a pixel, whatever the pipeline is asked to hold.
+#[test]
+fn a_plain_scene_stays_plain() {
+    let mut scene = Scene::load("scenes/two-spheres.toml").expect("a scene");
+    (scene.width, scene.height) = (40, 24);
+    let all = Settings {
+        effects: EffectChoice::All,
+        ..Settings::default()
+    };
+    let own = on_cpu(&scene);
+    assert!(own.pixels() == image(&scene, all, &Device::Cpu).pixels());
+    assert!(
+        own.pixels()
+            .iter()
+            .any(|pixel| pixel.color().max_element() > 0.1)
+    );
+    // Its light is developed as any other.
+    scene.develop.exposure = -3.0;
+    assert_ne!(own.to_rgb8(), on_cpu(&scene).to_rgb8());
+}
+
+/// Where effects are left out, what is left is finite: smooth metal without mirrors, spheres that would
+/// move without motion blur.
+#[test]
+fn effects_that_are_left_out_leave_no_holes() {
+    for name in GALLERY {
+        let scene = gallery(name, 32, 20, 4);
+        for (effect, _) in Effects::NAMED {
+            let settings = Settings {
+                effects: EffectChoice::Only(scene.effects().without(*effect)),
+                ..Settings::default()
+            };
+            let image = image(&scene, settings, &Device::Cpu);
+            assert!(
+                image.pixels().iter().all(|pixel| pixel.color().is_finite()),
+                "{name}"
+            );
+        }
+    }
+}
+
+/// The ambient light is the sky's, once: a white floor in it has its radiance.
+#[test]
+fn ambient_light_is_the_skys() {
+    let uniform = |light: f32, image| Surroundings {
+        horizon: Vec3::splat(light),
+        zenith: Vec3::splat(light),
+        sun: None,
+        image,
+    };
+    let map = EnvironmentImage {
+        width: 8,
+        height: 4,
+        texels: vec![Vec3::splat(0.3); 32],
+    };
+    for (sky, expected) in [
+        (None, 1.0),
+        (Some(uniform(0.3, None)), 0.3),
+        (Some(uniform(0.9, Some(map))), 0.3),
+    ] {
+        let mut scene = floor();
+        scene.sky = sky;
+        scene.sampling.ambient_occlusion = Some(1.0);
+        let (mean, error) = mean(&on_cpu(&scene));
+        assert!(
+            (mean - expected).abs() <= 4.0 * error + 1e-3,
+            "{mean} ± {error}, {expected}"
+        );
+    }
+}
+
 /// CPU and GPU take the same decisions: the same seed is the same image, but for paths that a
 /// rounding sends elsewhere.
 #[test]
@@ -569,7 +640,7 @@ fn images_do_not_depend_on_how_the_work_is_cut() {
 
 #[test]
 fn a_noise_target_ends_a_render() {
-    let scene = gallery("soft-light", 48, 32, 1 << 20);
+    let scene = gallery("soft-light", 48, 32, MAX_SAMPLES);
     let settings = Settings {
         noise: Some(0.02),
         ..Settings::default()
@@ -585,7 +656,7 @@ fn a_noise_target_ends_a_render() {
 
 #[test]
 fn a_time_limit_ends_a_render() {
-    let scene = gallery("soft-light", 48, 32, 1 << 20);
+    let scene = gallery("soft-light", 48, 32, MAX_SAMPLES);
     let settings = Settings {
         time_limit: Some(std::time::Duration::from_millis(50)),
         ..Settings::default()

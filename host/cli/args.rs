@@ -81,9 +81,9 @@ pub(super) struct RenderArguments {
     #[arg(long, value_name = "N")]
     pub(super) seed: Option<u32>,
 
-    /// Which effects the pipeline holds: auto (those that the scene calls for), all (the others stay idle), or a list of
-    /// names as `spherule explain` prints them (the scene's other effects are left out)
-    #[arg(long, value_name = "auto|all|LIST", default_value = "auto", value_parser = effects)]
+    /// Which effects the pipeline holds: auto (those that the scene calls for), all (the others stay idle), none, or a
+    /// list of names as `spherule explain` prints them (the scene's other effects are left out)
+    #[arg(long, value_name = "auto|all|none|LIST", default_value = "auto", value_parser = effects)]
     pub(super) effects: EffectChoice,
 
     /// Take no more samples after this many seconds of tracing
@@ -95,7 +95,7 @@ pub(super) struct RenderArguments {
     pub(super) noise: Option<f64>,
 
     /// Render on the GPU and on the CPU and compare: fail if more than 0.1 % of the pixels differ by more than 2/255
-    #[arg(long)]
+    #[arg(long, conflicts_with_all = ["time_limit", "noise"])]
     pub(super) check: bool,
 
     /// Write timings and counts as JSON; - writes to stdout

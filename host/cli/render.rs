@@ -108,7 +108,9 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<ExitCode> {
     };
 
     let rendered = match with_bar(arguments, &scene, settings, &device) {
-        Err(error @ Error::RungRefused { .. }) if arguments.device == DeviceChoice::Auto => {
+        Err(error @ Error::RungRefused { .. })
+            if arguments.device == DeviceChoice::Auto && !arguments.check =>
+        {
             device = Device::Cpu;
             say(&format!("{error}\nrendering on {} instead", device.name()));
             with_bar(arguments, &scene, settings, &device)?
@@ -126,8 +128,20 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<ExitCode> {
             "depth from {near} (white) to {far} (black) scene units"
         ));
     }
+    let asks_for_samples = arguments.samples.is_some()
+        || arguments.seed.is_some()
+        || arguments.time_limit.is_some()
+        || arguments.noise.is_some();
+    if asks_for_samples && rendered.reached.is_none() {
+        say(
+            "nothing in this image is sampled: --samples, --seed, --time-limit and --noise have no effect",
+        );
+    }
     let samples = match rendered.reached {
         None => String::new(),
+        Some(reached) if reached.noise.is_infinite() => {
+            format!(", {} samples a pixel", reached.samples)
+        }
         Some(reached) => format!(
             ", {} samples a pixel{}, noise {:.2} %",
             reached.samples,

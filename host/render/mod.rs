@@ -103,11 +103,15 @@ pub fn render(
 ) -> Result<Rendered> {
     let settings = settings.into();
     let shown = settings.effects.shown(scene.effects());
-    let compiled = settings.effects.compiled(scene.effects());
-    if settings.shading == Shading::Lit && !compiled.and(shown).is_empty() {
+    if settings.shading == Shading::Lit && !shown.is_empty() {
         return paths::render(scene, &settings, device, progress);
     }
     let launch = whole_image(scene)?;
+    let image = |pixels| {
+        let mut image = Image::new(scene.width, scene.height, settings.shading, pixels);
+        image.develop = scene.develop;
+        image
+    };
     match device {
         Device::Cpu => {
             let started = Instant::now();
@@ -117,7 +121,7 @@ pub fn render(
                 ..Timings::default()
             };
             Ok(Rendered {
-                image: Image::new(scene.width, scene.height, settings.shading, pixels),
+                image: image(pixels),
                 timings,
                 reached: None,
             })
@@ -125,7 +129,7 @@ pub fn render(
         Device::Gpu(gpu) => {
             let (pixels, timings) = gpu::render(gpu, &launch, &scene.world, settings, progress)?;
             Ok(Rendered {
-                image: Image::new(scene.width, scene.height, settings.shading, pixels),
+                image: image(pixels),
                 timings,
                 reached: None,
             })
@@ -168,7 +172,10 @@ pub fn whole_image(scene: &Scene) -> Result<Launch> {
     let size = glam::UVec2::new(scene.width, scene.height);
     Ok(Launch {
         camera: camera(scene)?,
-        background: scene.background,
+        background: scene
+            .sky
+            .as_ref()
+            .map_or(scene.background, |sky| sky.horizon),
         first_of_tile: 1,
         image_size: size,
         tile_origin: glam::UVec2::ZERO,

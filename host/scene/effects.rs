@@ -40,7 +40,11 @@ impl Scene {
     #[must_use]
     pub fn called_effects(&self) -> Vec<Called> {
         let mut called = self.called_but_sampling();
-        let random = called.iter().any(|called| called.effect.any(RANDOM));
+        let random = self.is_random(
+            called
+                .iter()
+                .fold(Effects::NONE, |set, one| set.and(one.effect)),
+        );
         let (samples, by) = match self.sampling.samples {
             Some(samples) => (samples, format!("[image] samples = {samples}")),
             None if random => (
@@ -69,7 +73,7 @@ impl Scene {
     #[must_use]
     pub fn samples(&self) -> u32 {
         self.sampling.samples.unwrap_or_else(|| {
-            if self.effects().any(RANDOM) {
+            if self.is_random(self.effects()) {
                 Sampling::DEFAULT_SAMPLES
             } else {
                 1
@@ -184,10 +188,12 @@ impl Scene {
             .iter()
             .filter(|v| **v != glam::Vec3::ZERO);
         let moving = moving.count();
-        if open < close && moving > 0 {
+        if (open, close) != (0.0, 0.0) && moving > 0 {
             call(
                 Effects::MOTION_BLUR,
-                format!("{moving} [[sphere]] with a velocity while the shutter is open"),
+                format!(
+                    "{moving} [[sphere]] with a velocity, and [camera] shutter = [{open}, {close}]"
+                ),
             );
         }
         if let Some(fog) = &self.fog {
@@ -212,10 +218,20 @@ impl Scene {
         called
     }
 
-    /// Whether anything shines other than the lamp at the eye.
+    /// Whether an image with these effects is random. Of several hard lights one is chosen by chance.
+    fn is_random(&self, effects: Effects) -> bool {
+        let sun = self.sky.as_ref().and_then(|sky| sky.sun);
+        let hard = self.lights.len() + usize::from(sun.is_some_and(|sun| sun.size == 0.0));
+        effects.any(RANDOM) || effects.any(Effects::HARD_SHADOWS) && hard > 1
+    }
+
+    /// Whether anything shines other than the lamp at the eye. A sky shines by way of a bounce.
     fn has_light(&self) -> bool {
         !self.lights.is_empty()
-            || self.sky.is_some()
+            || self
+                .sky
+                .as_ref()
+                .is_some_and(|sky| sky.sun.is_some() || self.sampling.max_bounces > 0)
             || self.sampling.ambient_occlusion.is_some()
             || self.first_of(Material::EMISSIVE).is_some()
     }

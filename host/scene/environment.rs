@@ -41,6 +41,12 @@ pub fn load(path: &Path, strength: f32) -> Result<EnvironmentImage> {
     }
     let linear = decoded.to_rgb32f();
     let (width, height) = linear.dimensions();
+    if width == 0 || height == 0 {
+        return Err(wrong(
+            format!("has {width} × {height} pixels"),
+            "give an image that shows something",
+        ));
+    }
     let texels: Vec<Vec3> = linear
         .pixels()
         .map(|pixel| Vec3::from_array(pixel.0) * strength)

@@ -32,8 +32,9 @@ pub use world::World;
 /// The largest width or height of an image, in pixels.
 pub const MAX_IMAGE_SIDE: u32 = 65_536;
 
-/// The most samples a pixel: the count is kept in a 32-bit float.
-pub const MAX_SAMPLES: u32 = 1 << 24;
+/// The most samples a pixel: they are added up in 32-bit floats, whose roundings stay below a
+/// thousandth of each sample up to here.
+pub const MAX_SAMPLES: u32 = 1 << 16;
 
 /// The largest coordinate or radius, in scene units: the sum of three squares of twice this is
 /// still a 32-bit float.

@@ -51,8 +51,8 @@ pub struct EnvironmentImage {
 /// A homogeneous medium in a ball.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FogBall {
-    /// The kernel's own words for the medium. With a radius of zero it fills the smallest ball
-    /// about everything there is in the scene, the camera included.
+    /// The kernel's own words for the medium. With a radius of zero it fills the ball around
+    /// the box of all spheres, where they are at time 0, and of the camera.
     pub medium: Fog,
 }
 

@@ -391,6 +391,16 @@ impl Reader<'_> {
             Some(albedo) => self.reflectance(albedo)?,
             None => Vec3::ONE,
         };
+        if let (Some(center), None) = (&fog.center, &fog.radius) {
+            return Err(self
+                .wrong(
+                    center,
+                    "the fog has a center and no radius",
+                    "a ball without a radius",
+                    "add radius, or leave center out for fog around everything",
+                )
+                .into());
+        }
         let number = |name, value: &Option<Spanned<f64>>, range, default| match value {
             Some(value) => self.number(name, value, range),
             None => Ok(default),
@@ -963,7 +973,7 @@ radius = 100
     fn each_key_of_the_effects_refuses_what_it_cannot_be() {
         let cases = [
             ("[image]\nsamples = 0", "samples = 0"),
-            ("[image]\nsamples = 99999999", "99999999"),
+            ("[image]\nsamples = 65537", "65537"),
             ("[image]\nmax_bounces = -1", "max_bounces = -1"),
             ("[image]\nambient_occlusion = 0", "ambient_occlusion = 0"),
             ("[image]\nseed = -5", "seed = -5"),
@@ -1055,6 +1065,7 @@ radius = 100
             ("[fog]\nextinction = 1\nalbedo = [2, 0, 0]", "above one"),
             ("[fog]\nextinction = 1\nanisotropy = 1", "anisotropy = 1"),
             ("[fog]\nextinction = 1\nradius = 0", "radius = 0"),
+            ("[fog]\nextinction = 1\ncenter = [0, 0, 0]", "no radius"),
         ];
         for (text, word) in cases {
             let text = format!("{text}\n[[sphere]]\ncenter = [0, 0, -3]\nradius = 0.5\n");

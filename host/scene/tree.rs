@@ -49,11 +49,13 @@ impl Bounds {
             sphere.center().as_dvec3() + moved
         };
         let (first, last) = (at(shutter.0), at(shutter.1));
+        let size = sphere.center().as_dvec3().abs() + first.abs().max(last.abs());
         // The kernel moves a sphere in 32 bits, which rounds its centre twice.
         let moves = velocity != Vec3::ZERO;
         let outwards = |x: DVec3, up: bool| {
-            Vec3::from_array(x.to_array().map(|x| {
-                let slack = if moves { x.abs() * 4e-7 } else { 0.0 };
+            Vec3::from_array([0, 1, 2].map(|axis| {
+                let x = x[axis];
+                let slack = if moves { size[axis] * 4e-7 } else { 0.0 };
                 if up {
                     ((x + slack) as f32).next_up()
                 } else {

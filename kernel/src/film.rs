@@ -174,10 +174,10 @@ pub struct PathLaunch {
     pub sphere_light_probability: f32,
     /// The bits of the effects that the scene calls for: what else the pipeline holds stays idle.
     pub called_effects: u32,
+    /// 1 if ambient light comes from the sky, 0 if it is white.
+    pub has_ambient_sky: u32,
     /// Nothing; it keeps what follows where the GPU's layout has it.
-    pub padding: u32,
-    /// Nothing, as the field before.
-    pub padding_end: UVec2,
+    pub padding: UVec2,
     /// What surrounds the scene.
     pub sky: Sky,
     /// The medium, if there is one.

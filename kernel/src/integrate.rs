@@ -5,7 +5,8 @@
 //! Kajiya, The rendering equation, SIGGRAPH 1986). At each vertex that is not a mirror, one light is
 //! looked for as well, and the two ways of finding a light are weighed by the power heuristic. The
 //! estimate is unbiased but for three things that a scene asks for: the limit on bounces, ambient
-//! occlusion, and the headlamp. Beyond the third bounce dark paths end by Russian roulette, which
+//! occlusion, and the headlamp. Lights without extent are not met by chance: they do not shine
+//! through glass, and no mirror shows them. Beyond the third bounce dark paths end by Russian roulette, which
 //! has no bias.
 //!
 //! A thread works through its samples in one loop: where a path has ended the next begins, so that
@@ -267,6 +268,9 @@ fn step(scenery: &Scenery<'_>, path: &mut Path, sampler: &Sampler) -> bool {
         if (from < to) & (at < to) {
             lobe = PHASE;
             surface.point = ray.at(at);
+            if effects.any(Effects::GLASS) {
+                path.throughput *= absorb(path.absorption, at);
+            }
             path.throughput *= launch.fog.albedo;
         }
     }
@@ -368,7 +372,8 @@ fn step(scenery: &Scenery<'_>, path: &mut Path, sampler: &Sampler) -> bool {
     let choice = sampler.single(dimension + 3);
     let direction = vertex.sample(scenery, sampler.pair(dimension), choice);
     let (value, density) = vertex.evaluate(scenery, direction);
-    if density <= 0.0 {
+    // Written so that a NaN ends the path.
+    if !(density > 0.0) {
         return false;
     }
     path.throughput *= value / density;
@@ -423,7 +428,7 @@ fn ambient_light(scenery: &Scenery<'_>, time: f32, surface: &Surface, direction:
     ray.t_max = launch.ambient_distance;
     if scenery.is_occluded(&ray, time) {
         Vec3::ZERO
-    } else if effects.any(Effects::SKY_GRADIENT.and(Effects::ENVIRONMENT)) {
+    } else if launch.has_ambient_sky == 1 {
         launch.sky.radiance(effects, direction, scenery.tables)
     } else {
         Vec3::ONE
@@ -442,6 +447,12 @@ fn light_from_seeking(
     dimension: u32,
 ) -> Vec3 {
     let lamp = light::choose(scenery.lights, sampler.single(dimension + 2));
+    if scenery.effects.any(Effects::AMBIENT_OCCLUSION)
+        && (vertex.lobe == LAMBERT) & (lamp.kind == Light::ENVIRONMENT)
+    {
+        // It is the ambient light already.
+        return Vec3::ZERO;
+    }
     let found = seek(
         scenery,
         &lamp,
@@ -475,7 +486,11 @@ fn light_from_seeking(
         let fog = &scenery.launch.fog;
         weight *= fog.transmittance(shadow.origin, shadow.direction, shadow.t_max);
     }
-    light * (weight / found.density)
+    let mut light = light * (weight / found.density);
+    if scenery.effects.any(Effects::GLASS) && shadow.t_max < Hit::NONE_T {
+        light *= absorb(path.absorption, shadow.t_max);
+    }
+    light
 }
 
 /// A light as it is looked for from a point.

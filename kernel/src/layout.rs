@@ -105,8 +105,8 @@ layouts! {
     "PathLaunch.ambient_distance" = offset_of!(PathLaunch, ambient_distance);
     "PathLaunch.sphere_light_probability" = offset_of!(PathLaunch, sphere_light_probability);
     "PathLaunch.called_effects" = offset_of!(PathLaunch, called_effects);
+    "PathLaunch.has_ambient_sky" = offset_of!(PathLaunch, has_ambient_sky);
     "PathLaunch.padding" = offset_of!(PathLaunch, padding);
-    "PathLaunch.padding_end" = offset_of!(PathLaunch, padding_end);
     "PathLaunch.sky" = offset_of!(PathLaunch, sky);
     "PathLaunch.fog" = offset_of!(PathLaunch, fog);
     "size of Accumulator" = size_of::<Accumulator>();

@@ -94,10 +94,10 @@ impl Light {
     }
 }
 
-/// The light that `u` chooses: the first whose cumulative probability exceeds it.
+/// The light that `u` chooses, of at least one: the first whose cumulative probability exceeds it.
 #[inline]
 #[must_use]
-pub fn choose(lights: &[Light], u: f32) -> Light {
+pub(crate) fn choose(lights: &[Light], u: f32) -> Light {
     let mut low = 0;
     let mut high = lights.len() - 1;
     while low < high {

@@ -42,10 +42,11 @@ pub fn schlick(color: Vec3, cosine: f32) -> Vec3 {
 
 /// The distribution of normals, per solid angle of them and unit of surface.
 #[inline]
-fn distribution(normal_z: f32, alpha: f32) -> f32 {
+fn distribution(normal: Vec3, alpha: f32) -> f32 {
     // cos²(α² − 1) + 1 without cancellation.
-    let cosine2 = normal_z * normal_z;
-    let denominator = (1.0 - cosine2) + cosine2 * alpha * alpha;
+    let sine2 = normal.x * normal.x + normal.y * normal.y;
+    let across = normal.z * alpha;
+    let denominator = sine2 + across * across;
     alpha * alpha / (PI * denominator * denominator)
 }
 
@@ -62,7 +63,7 @@ fn hidden(z: f32, alpha: f32) -> f32 {
 #[inline]
 fn single_bounce(from: Vec3, to: Vec3, alpha: f32) -> (f32, f32) {
     let half = unit(from + to);
-    let d = distribution(half.z, alpha);
+    let d = distribution(half, alpha);
     let (hidden_from, hidden_to) = (hidden(from.z, alpha), hidden(to.z, alpha));
     let value = d / (4.0 * from.z * (1.0 + hidden_from + hidden_to));
     let density = d / (4.0 * from.z * (1.0 + hidden_from));
@@ -98,6 +99,8 @@ impl RoughMetal {
     #[inline]
     #[must_use]
     pub fn new(color: Vec3, alpha: f32, from: Vec3, table: &[f32]) -> Self {
+        // One that is smoother is left to the mirror, where there is one.
+        let alpha = alpha.max(SMOOTHEST);
         Self {
             color,
             alpha,

@@ -74,7 +74,7 @@ pub fn is_occluded(rung: u32, ray: &Ray, spheres: &[Sphere]) -> bool {
 /// The sphere with this index, below the length of the slice, where it is at `time` if spheres move.
 #[inline]
 #[must_use]
-pub fn sphere_at(
+pub(crate) fn sphere_at(
     effects: Effects,
     spheres: &[Sphere],
     velocities: &[Vec4],

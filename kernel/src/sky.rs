@@ -161,7 +161,7 @@ fn share(tables: &[f32], first: usize, index: u32) -> f32 {
 /// The first of `count` entries whose cumulative probability exceeds `u`, and where in it `u` is.
 #[inline]
 fn find(tables: &[f32], first: usize, count: u32, u: f32) -> (u32, f32) {
-    if first + count as usize > tables.len() {
+    if (count == 0) | (first + count as usize > tables.len()) {
         return (0, 0.0);
     }
     let mut low = 0;

@@ -81,8 +81,8 @@ impl Slabs {
     }
 }
 
-/// 1/x; for an x whose reciprocal floats have not, the largest number, so that nothing is infinite
-/// and no product of zero is undefined.
+/// 1/x; for an x whose reciprocal floats have not, the largest number, so that no product
+/// of zero is undefined.
 #[inline]
 fn reciprocal(x: f32) -> f32 {
     if x.abs() > 2.0 * f32::MIN_POSITIVE {
@@ -117,7 +117,7 @@ pub fn nearest_hit_in_tree(
                 next = at as u32 + 1;
             }
             let mut index = node.spheres >> 4;
-            let end = index + (node.spheres & 15);
+            let end = (index + (node.spheres & 15)).min(spheres.len() as u32);
             while index < end {
                 let sphere = sphere_at(effects, spheres, velocities, index as usize, time);
                 let t = intersect(rung, sphere, &ray);
@@ -128,7 +128,8 @@ pub fn nearest_hit_in_tree(
                 index += 1;
             }
         }
-        at = next as usize;
+        // Forward, whatever the node says.
+        at = (next as usize).max(at + 1);
     }
     hit
 }
@@ -157,14 +158,15 @@ pub fn is_occluded_in_tree(
                 next = at as u32 + 1;
             }
             let mut index = node.spheres >> 4;
-            let end = index + (node.spheres & 15);
+            let end = (index + (node.spheres & 15)).min(spheres.len() as u32);
             while (index < end) & !found {
                 let sphere = sphere_at(effects, spheres, velocities, index as usize, time);
                 found = intersect(rung, sphere, ray) < ray.t_max;
                 index += 1;
             }
         }
-        at = next as usize;
+        // Forward, whatever the node says.
+        at = (next as usize).max(at + 1);
     }
     found
 }

@@ -29,6 +29,7 @@ pub struct Reached {
     pub samples: u32,
     /// The standard error of the pixels' luminance, root mean square over the image, over the mean
     /// luminance of the image. An upper estimate: it takes the stratified samples for independent.
+    /// Infinite where it is not known: for a single sample, or light beyond what floats square.
     pub noise: f64,
     /// What ended it.
     pub stopped_by: StoppedBy,
@@ -111,6 +112,13 @@ impl Budget {
 
 /// See [`Reached::noise`].
 pub(super) fn noise(accumulators: &[Accumulator]) -> f64 {
+    let is_known = |sum: &Accumulator| {
+        let light = luminance(sum.color());
+        sum.samples() > 1.0 && (light * light).is_finite() && sum.variance_of_mean().is_finite()
+    };
+    if !accumulators.par_iter().all(is_known) {
+        return f64::INFINITY;
+    }
     let (variance, mean) = accumulators
         .par_iter()
         .map(|sum| {

@@ -94,6 +94,8 @@ pub fn render(
     let mut origin = UVec2::ZERO;
     let (mut fewest, mut stopped_by) = (u32::MAX, StoppedBy::Samples);
     while origin.y < size.y {
+        // Noise is that of the whole image, as far as one readback reaches.
+        let work = if settings.noise.is_some() { 1 } else { work };
         let mut tile = Pace::default().tile(size.x, size - origin, max_pixels, work);
         tile.x = u64::from(tile.x).min(threads) as u32;
         tile.y = if tile.x == size.x {

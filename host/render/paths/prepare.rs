@@ -52,11 +52,16 @@ impl Prepared {
         let shown = choice.shown(called);
         let view = scene.view_or_framed();
         let lens = scene.lens;
-        let Grown { world, nodes } =
-            tree::grow(&scene.world, lens.shutter).unwrap_or_else(|| Grown {
-                world: scene.world.clone(),
-                nodes: Vec::new(),
-            });
+        // Without motion blur spheres are where they are at time 0.
+        let shutter = if shown.any(Effects::MOTION_BLUR) {
+            lens.shutter
+        } else {
+            (0.0, 0.0)
+        };
+        let Grown { world, nodes } = tree::grow(&scene.world, shutter).unwrap_or_else(|| Grown {
+            world: scene.world.clone(),
+            nodes: Vec::new(),
+        });
         let (lights, mut sky, sphere_light_probability) = lights(scene, &world);
         if let Some(image) = scene.sky.as_ref().and_then(|sky| sky.image.as_ref()) {
             sky.environment_size = glam::UVec2::new(image.width, image.height);
@@ -77,6 +82,7 @@ impl Prepared {
             ambient_distance: scene.sampling.ambient_occlusion.unwrap_or(0.0),
             sphere_light_probability,
             called_effects: shown.to_bits(),
+            has_ambient_sky: scene.sky.is_some().into(),
             sky,
             fog: fog(scene, view.eye),
             ..PathLaunch::default()
@@ -185,7 +191,7 @@ fn lights(scene: &Scene, world: &World) -> (Vec<Light>, Sky, f32) {
     (lights, sky, factor)
 }
 
-/// The medium, in the ball that it is said to fill or else in one about everything.
+/// The medium, in the ball that it is said to fill or else in the one around the box of everything.
 fn fog(scene: &Scene, eye: Vec3) -> Fog {
     let Some(fog) = scene.fog else {
         return Fog::default();
