@@ -1,4 +1,4 @@
-//! Images of the surroundings: equirectangular, as Radiance HDR or OpenEXR files.
+//! Images of the surroundings: equirectangular, as `.hdr` or `.exr` files.
 
 use std::path::Path;
 

@@ -372,8 +372,9 @@ fn step(scenery: &Scenery<'_>, path: &mut Path, sampler: &Sampler) -> bool {
     let choice = sampler.single(dimension + 3);
     let direction = vertex.sample(scenery, sampler.pair(dimension), choice);
     let (value, density) = vertex.evaluate(scenery, direction);
-    // Written so that a NaN ends the path.
-    if !(density > 0.0) {
+    // Asked this way, so that a NaN ends the path.
+    let is_possible = density > 0.0;
+    if !is_possible {
         return false;
     }
     path.throughput *= value / density;
