@@ -32,7 +32,7 @@ pub struct Step {
 }
 
 /// Renders `scene` on `device` on each of `rungs` with 1, 2, 4, … up to `most` samples. The reference
-/// is of another seed, on the highest of the rungs, with [`REFERENCE`] times as many.
+/// is of another seed, on the highest of the rungs, with sixteen times as many.
 ///
 /// # Errors
 ///
