@@ -14,6 +14,8 @@
 //! ```
 
 use std::borrow::Cow;
+use std::collections::HashMap;
+use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::{Mutex, PoisonError, mpsc};
 use std::time::{Duration, Instant};
 
@@ -48,7 +50,7 @@ impl Default for GpuOptions {
 }
 
 /// How a kernel uses a buffer.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Access {
     /// A small constant, in uniform memory.
     Uniform,
@@ -58,8 +60,8 @@ pub enum Access {
     ReadWrite,
 }
 
-/// An entry point, compiled by the driver.
-#[derive(Debug)]
+/// An entry point, compiled by the driver. Copies share what was compiled.
+#[derive(Clone, Debug)]
 pub struct Kernel {
     name: String,
     pipeline: wgpu::ComputePipeline,
@@ -109,7 +111,13 @@ pub struct Gpu {
     /// Locked while a launch uses it: there is one pair of timestamps.
     timer: Option<Mutex<Timer>>,
     watch: Watch,
+    /// What was compiled so far; drivers keep it on disk, for the next process.
+    kernels: Mutex<HashMap<KernelKey, Kernel>>,
 }
+
+/// What a compiled kernel depends on: a digest of the module's words, as they were specialised, whether
+/// the driver takes them unseen, the entry point, and its bindings.
+type KernelKey = (u64, bool, String, Vec<Access>);
 
 impl Gpu {
     /// Opens the adapter that `choice` means.
@@ -168,6 +176,7 @@ impl Gpu {
             timeout: options.timeout,
             timer,
             watch,
+            kernels: Mutex::default(),
         })
     }
 
@@ -202,7 +211,7 @@ impl Gpu {
         let _ = self.device.poll(wgpu::PollType::Poll);
     }
 
-    /// Compiles an entry point of `module`; `bindings` says how it uses descriptor set 0, from
+    /// Compiles an entry point of `module`, unless this device has done so before; `bindings` says how it uses descriptor set 0, from
     /// binding 0 upwards.
     ///
     /// # Errors
@@ -242,6 +251,18 @@ impl Gpu {
             )));
         }
         self.check_workgroup(entry_point, entry.workgroup_size)?;
+        let mut hasher = DefaultHasher::new();
+        module.words().hash(&mut hasher);
+        let key = (
+            hasher.finish(),
+            module.is_trusted(),
+            entry_point.to_owned(),
+            bindings.to_vec(),
+        );
+        let kernels = || self.kernels.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(kernel) = kernels().get(&key) {
+            return Ok(kernel.clone());
+        }
 
         let during = format!("compiling the kernel {entry_point}");
         let made = self.watch.checked(&self.device, &during, || {
@@ -273,12 +294,14 @@ impl Gpu {
             Error::Validation { reason, .. } => invalid(reason),
             other => other,
         })?;
-        Ok(Kernel {
+        let kernel = Kernel {
             name: entry_point.into(),
             pipeline,
             layout,
             workgroup_size: entry.workgroup_size,
-        })
+        };
+        kernels().insert(key, kernel.clone());
+        Ok(kernel)
     }
 
     fn shader_module(&self, module: &Module) -> wgpu::ShaderModule {
