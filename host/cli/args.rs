@@ -212,7 +212,7 @@ fn subject(text: &str) -> Result<Subject, String> {
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub(super) enum Shade {
-    /// A lamp at the eye, with the material's colour
+    /// Light: the scene's own, or else a lamp at the eye
     Lit,
     /// The surface normal n as the colour n · 0.5 + 0.5
     Normals,
