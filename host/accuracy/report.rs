@@ -58,11 +58,18 @@ pub fn page(
          <meta name=\"viewport\" content=\"width=device-width\">\
          <title>What accuracy costs in time</title><style>{STYLE}</style></head><body>\n\
          <h1>What accuracy costs in time</h1>\n\
-         <p>{device}, {rays} rays a family, every answer judged by exact arithmetic. Left: the worst error of the \
-         distance t against the time of one ray-sphere test; lower and further left is better, and the line joins the \
-         rungs that no other beats in both. Beside a name stand the rays put on the wrong side of a silhouette. Right: \
-         how the errors of the hits are spread.</p>\n",
-        device = escape(device),
+         <p>{}{}</p>\n",
+        escape(device),
+        if families.is_empty() {
+            ".".to_owned()
+        } else {
+            format!(
+                ", {rays} rays a family, every answer judged by exact arithmetic. Left: the worst error of the \
+                 distance t against the time of one ray-sphere test; lower and further left is better, and the line joins the \
+                 rungs that no other beats in both. Beside a name stand the rays put on the wrong side of a silhouette. Right: \
+                 how the errors of the hits are spread."
+            )
+        },
     );
     for family in families {
         // Writing to a String cannot fail.

@@ -192,12 +192,16 @@ fn steps_table(report: &Report) -> String {
         // Writing to a String cannot fail.
         let _ = writeln!(
             text,
-            "{:12} {:>8} {:>14.3} {:>8.3} % {:>8.3} % {:>10.5} {:>12.3e}",
+            "{:12} {:>8} {:>14.3} {:>8.3} % {:>10} {:>10.5} {:>12.3e}",
             if is_first { step.rung } else { "" },
             step.samples,
             step.milliseconds,
             100.0 * step.error,
-            100.0 * step.estimate,
+            if step.estimate.is_finite() {
+                format!("{:.3} %", 100.0 * step.estimate)
+            } else {
+                "–".into()
+            },
             step.flip,
             step.error * step.error * step.milliseconds,
         );
