@@ -62,14 +62,10 @@ pub(super) fn run(arguments: &ExplainArguments) -> Result<ExitCode> {
     }
     scene.sampling.samples = arguments.samples.or(scene.sampling.samples);
     let (device, why) = Device::open(&arguments.device)?;
-    let has_f64 = match &device {
-        Device::Cpu => true,
-        Device::Gpu(gpu) => gpu.has_f64(),
-    };
     let (rung, why_precision) = match arguments.precision.rung() {
         Some(rung) => (rung, "asked for".to_owned()),
         None => {
-            let choice = choose(&scene, DEFAULT_TOLERANCE, has_f64);
+            let choice = choose(&scene, DEFAULT_TOLERANCE, device.has_f64());
             (choice.rung, format!("within {:.1e} pixels", choice.bound))
         }
     };

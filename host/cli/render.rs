@@ -223,11 +223,7 @@ fn choose_rung(arguments: &RenderArguments, scene: &Scene, device: &Device) -> (
     if let Some(rung) = arguments.precision.rung() {
         return (rung, "asked for".into());
     }
-    let has_f64 = match device {
-        Device::Cpu => true,
-        Device::Gpu(gpu) => gpu.has_f64(),
-    };
-    let choice = choose(scene, arguments.tolerance, has_f64);
+    let choice = choose(scene, arguments.tolerance, device.has_f64());
     let mut why = format!(
         "within {:.1e} pixels, {} are allowed",
         choice.bound, arguments.tolerance

@@ -61,6 +61,15 @@ impl Device {
         }
     }
 
+    /// Whether kernels may use 64-bit floats.
+    #[must_use]
+    pub fn has_f64(&self) -> bool {
+        match self {
+            Self::Cpu => true,
+            Self::Gpu(gpu) => gpu.has_f64(),
+        }
+    }
+
     /// `cpu` or `gpu`.
     #[must_use]
     pub fn backend(&self) -> &'static str {

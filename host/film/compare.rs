@@ -57,18 +57,13 @@ impl Comparison {
         {
             return None;
         }
-        let opaque = |image: &Image| match image.alpha() {
-            Some(alpha) => alpha.to_vec(),
-            None => vec![1.0; image.pixels.len()],
-        };
-        let (opacity_a, opacity_b) = (opaque(first), opaque(second));
         let encoder = Encoder::of_both(first, second);
         let (largest, sum, differing) = first
             .pixels
             .par_iter()
             .zip(&second.pixels)
-            .zip(opacity_a.par_iter().zip(&opacity_b))
-            .map(|((a, b), (opacity_a, opacity_b))| {
+            .enumerate()
+            .map(|(index, (a, b))| {
                 let (a_hits, b_hits) = (a.is_hit(), b.is_hit());
                 let (a, b) = (encoder.encode(a), encoder.encode(b));
                 let differences = [0, 1, 2].map(|channel| (a[channel] - b[channel]).abs() * 255.0);
@@ -78,7 +73,8 @@ impl Comparison {
                 let same_color = differences
                     .iter()
                     .all(|difference| *difference <= tolerance.channel);
-                let same_opacity = (opacity_a - opacity_b).abs() * 255.0 <= tolerance.channel;
+                let opacity = first.opacity(index) - second.opacity(index);
+                let same_opacity = opacity.abs() * 255.0 <= tolerance.channel;
                 let same = same_color && same_opacity && a_hits == b_hits;
                 (largest, sum, usize::from(!same))
             })

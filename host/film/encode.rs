@@ -39,20 +39,19 @@ impl Image {
     #[must_use]
     pub fn to_rgba8(&self) -> Vec<u8> {
         let encoder = Encoder::of(self);
-        let opaque = vec![1.0; self.pixels.len()];
-        let alpha = self.alpha().unwrap_or(&opaque);
         let byte = |value: f32| (value.clamp(0.0, 1.0) * 255.0 + 0.5) as u8;
         self.pixels
             .par_iter()
-            .zip(alpha)
-            .flat_map_iter(|(pixel, alpha)| {
-                let straight = if *alpha > 0.0 {
-                    Pixel::new(pixel.color() / *alpha, pixel.depth())
+            .enumerate()
+            .flat_map_iter(|(index, pixel)| {
+                let alpha = self.opacity(index);
+                let straight = if alpha > 0.0 {
+                    Pixel::new(pixel.color() / alpha, pixel.depth())
                 } else {
                     Pixel::new(Vec3::ZERO, pixel.depth())
                 };
                 let [r, g, b] = encoder.encode(&straight).map(byte);
-                [r, g, b, byte(*alpha)]
+                [r, g, b, byte(alpha)]
             })
             .collect()
     }

@@ -86,6 +86,11 @@ impl Image {
         (!self.alpha.is_empty()).then_some(&self.alpha)
     }
 
+    /// How opaque the pixel with this index is.
+    fn opacity(&self, index: usize) -> f32 {
+        self.alpha.get(index).copied().unwrap_or(1.0)
+    }
+
     /// Width in pixels.
     #[must_use]
     pub fn width(&self) -> u32 {

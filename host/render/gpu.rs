@@ -6,6 +6,7 @@ use glam::UVec2;
 use spherule_kernel::{Launch, Material, Pixel, Shading, Sphere};
 
 use super::pace::Pace;
+use super::tiles::Tiles;
 use super::{Progress, Settings, Timings};
 use crate::accuracy::canary::Canary;
 use crate::device::{Access, Buffer, Gpu, Kernel};
@@ -16,8 +17,6 @@ use crate::scene::World;
 
 /// The entry point's name, for messages.
 const ENTRY: &str = "render";
-/// Pixels of one tile at most: what one readback moves.
-const MAX_TILE_PIXELS: u64 = 1 << 23;
 
 /// Renders `launch`, which covers a whole image, on `gpu`.
 ///
@@ -65,17 +64,10 @@ pub fn render_paced(
     )?;
     let world = DeviceWorld::upload(gpu, world)?;
     let size = launch.image_size;
-    let limits = gpu.limits();
-    let threads = u64::from(limits.max_compute_workgroups_per_dimension) * 8;
-    let max_pixels = (limits
-        .max_storage_buffer_binding_size
-        .min(limits.max_buffer_size)
-        / size_of::<Pixel>() as u64)
-        .min(MAX_TILE_PIXELS)
-        .min(u64::from(size.x) * u64::from(size.y));
+    let tiles = Tiles::new::<Pixel>(gpu, size);
     let target = Target {
         launch: gpu.upload_uniform("launch", launch)?,
-        pixels: gpu.zeroed("pixels", max_pixels as usize)?,
+        pixels: gpu.zeroed("pixels", tiles.max_pixels())?,
     };
     let mut timings = Timings {
         setup: started.elapsed(),
@@ -85,14 +77,7 @@ pub fn render_paced(
     let mut image = film::allocate(size.x, size.y)?;
     let mut origin = UVec2::ZERO;
     while origin.y < size.y {
-        let left = size - origin;
-        let mut tile = pace.tile(size.x, left, max_pixels, world.sphere_count);
-        tile.x = u64::from(tile.x).min(threads) as u32;
-        tile.y = if tile.x == size.x {
-            u64::from(tile.y).min(threads) as u32
-        } else {
-            1
-        };
+        let tile = tiles.at(origin, &pace, world.sphere_count);
         let launch = Launch {
             tile_origin: origin,
             tile_size: tile,
@@ -103,15 +88,11 @@ pub fn render_paced(
         let reading = Instant::now();
         let pixels = gpu.read_first(&target.pixels, (tile.x * tile.y) as usize)?;
         check_written(gpu, &pixels)?;
-        // A tile is whole rows, or a part of one: either way it is one piece of the image.
-        let start = origin.y as usize * size.x as usize + origin.x as usize;
+        let start = tiles.start(origin);
         image[start..start + pixels.len()].copy_from_slice(&pixels);
         timings.readback += reading.elapsed();
 
-        origin.x += tile.x;
-        if origin.x == size.x {
-            origin = UVec2::new(0, origin.y + tile.y);
-        }
+        origin = tiles.next(origin, tile);
         progress(f64::from(origin.y) / f64::from(size.y));
     }
     Ok((image, timings))

@@ -7,12 +7,14 @@
 //! | [`paths`] | light paths, for scenes that call for effects |
 //! | [`cost`] | the time of a frame by pipelines of more or fewer effects |
 //! | [`pace`] | how much work one launch gets |
+//! | `tiles` | how an image is cut within a device's limits |
 
 pub mod cost;
 pub mod cpu;
 pub mod gpu;
 pub mod pace;
 pub mod paths;
+mod tiles;
 
 use std::time::{Duration, Instant};
 

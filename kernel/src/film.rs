@@ -272,19 +272,6 @@ const _: () = {
     assert!(core::mem::offset_of!(Launch, sphere_count) == 108);
     assert!(size_of::<Pixel>() == 16);
     assert!(core::mem::offset_of!(Pixel, color_depth) == 0);
-};
-const _: () = {
-    assert!(size_of::<Launch>() == 112);
-    assert!(core::mem::offset_of!(Launch, camera) == 0);
-    assert!(core::mem::offset_of!(Launch, background) == 64);
-    assert!(core::mem::offset_of!(Launch, first_of_tile) == 76);
-    assert!(core::mem::offset_of!(Launch, image_size) == 80);
-    assert!(core::mem::offset_of!(Launch, tile_origin) == 88);
-    assert!(core::mem::offset_of!(Launch, tile_size) == 96);
-    assert!(core::mem::offset_of!(Launch, first_sphere) == 104);
-    assert!(core::mem::offset_of!(Launch, sphere_count) == 108);
-    assert!(size_of::<Pixel>() == 16);
-    assert!(core::mem::offset_of!(Pixel, color_depth) == 0);
     assert!(size_of::<PathLaunch>() == 272);
     assert!(core::mem::offset_of!(PathLaunch, sky) == 144);
     assert!(core::mem::offset_of!(PathLaunch, fog) == 224);

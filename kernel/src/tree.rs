@@ -39,8 +39,6 @@ pub struct Node {
 }
 
 impl Node {
-    /// The most spheres that a leaf has room to name.
-    pub const MAX_LEAF: u32 = 15;
     /// The most spheres that a tree has room to name.
     pub const MAX_SPHERES: u32 = 1 << 28;
     /// The specialisation constant that is 1 where the pipeline is for worlds with a tree.

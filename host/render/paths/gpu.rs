@@ -15,11 +15,10 @@ use crate::film;
 use crate::kernel_module;
 use crate::render::Timings;
 use crate::render::pace::Pace;
+use crate::render::tiles::Tiles;
 
 /// The entry point's name, for messages.
 const ENTRY: &str = "trace_paths";
-/// Pixels of one tile at most: what one readback moves.
-const MAX_TILE_PIXELS: u64 = 1 << 23;
 /// Boxes and spheres that a ray looks at in a tree, for the same.
 const TESTS_IN_A_TREE: u64 = 256;
 /// Rays of one sample of one pixel, for the size of the first launch.
@@ -68,15 +67,8 @@ pub fn render(
     let tables = gpu.upload("tables", &prepared.tables)?;
     let nodes = gpu.upload("nodes", &prepared.nodes)?;
     let uniform = gpu.upload_uniform("launch", &prepared.launch)?;
-    let limits = gpu.limits();
-    let threads = u64::from(limits.max_compute_workgroups_per_dimension) * 8;
-    let max_pixels = (limits
-        .max_storage_buffer_binding_size
-        .min(limits.max_buffer_size)
-        / size_of::<Accumulator>() as u64)
-        .min(MAX_TILE_PIXELS)
-        .min(u64::from(size.x) * u64::from(size.y));
-    let sums = gpu.zeroed::<Accumulator>("accumulators", max_pixels as usize)?;
+    let tiles = Tiles::new::<Accumulator>(gpu, size);
+    let sums = gpu.zeroed::<Accumulator>("accumulators", tiles.max_pixels())?;
     let mut timings = Timings {
         setup: started.elapsed(),
         compile,
@@ -96,15 +88,9 @@ pub fn render(
     while origin.y < size.y {
         // Noise is that of the whole image, as far as one readback reaches.
         let work = if settings.noise.is_some() { 1 } else { work };
-        let mut tile = Pace::default().tile(size.x, size - origin, max_pixels, work);
-        tile.x = u64::from(tile.x).min(threads) as u32;
-        tile.y = if tile.x == size.x {
-            u64::from(tile.y).min(threads) as u32
-        } else {
-            1
-        };
+        let tile = tiles.at(origin, &Pace::default(), work);
         let count = (tile.x * tile.y) as usize;
-        let start = origin.y as usize * size.x as usize + origin.x as usize;
+        let start = tiles.start(origin);
         // What is left of the time is shared out evenly over what is left of the image.
         let deadline = settings.time_limit.map(|limit| {
             let left = limit.saturating_sub(tracing.elapsed());
@@ -155,10 +141,7 @@ pub fn render(
         check_written(gpu, &pixels, budget.done())?;
         image[start..start + count].copy_from_slice(&pixels);
         timings.readback += reading.elapsed();
-        origin.x += tile.x;
-        if origin.x == size.x {
-            origin = UVec2::new(0, origin.y + tile.y);
-        }
+        origin = tiles.next(origin, tile);
     }
     if timings.trace == Duration::ZERO {
         timings.trace = tracing.elapsed();

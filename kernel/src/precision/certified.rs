@@ -104,24 +104,18 @@ pub fn intersect_with_stage(sphere: Sphere, ray: &Ray) -> (f32, Stage) {
     }
 }
 
-/// f·f, o·o, r² and b.
-#[inline]
-fn foot(sphere: Sphere, ray: &Ray) -> (f32, f32, f32, f32) {
-    let o = ray.origin - sphere.center();
-    let d = ray.direction;
-    let b = o.dot(d);
-    // The same for every sphere that the ray is tested against.
-    let inverse = 1.0 / d.dot(d);
-    let foot = o - d * (b * inverse);
-    let rr = sphere.radius() * sphere.radius();
-    (foot.dot(foot), o.dot(o), rr, b)
-}
-
 /// Stage 1. False where it cannot tell, which includes every NaN.
 #[inline]
 fn misses_for_certain(sphere: Sphere, ray: &Ray) -> bool {
-    let a = ray.direction.dot(ray.direction);
-    let (ff, oo, rr, b) = foot(sphere, ray);
+    let o = ray.origin - sphere.center();
+    let d = ray.direction;
+    let a = d.dot(d);
+    let b = o.dot(d);
+    // The same for every sphere that the ray is tested against.
+    let inverse = 1.0 / a;
+    let foot = o - d * (b * inverse);
+    let (ff, oo) = (foot.dot(foot), o.dot(o));
+    let rr = sphere.radius() * sphere.radius();
     let passes_by = ff - rr > FILTER * (ff + oo + rr);
     let is_outside = oo - rr > FILTER * (oo + rr);
     if passes_by | (is_outside & (b > 0.0)) {
