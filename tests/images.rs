@@ -298,7 +298,11 @@ fn every_pixel_is_written() {
             let module = spherule::kernel_module::f32().expect("the kernel");
             use spherule::device::Access::{Read, ReadWrite, Uniform};
             let kernel = gpu
-                .kernel(&module, "render", &[Uniform, Read, Read, Read, ReadWrite])
+                .kernel(
+                    &module,
+                    "render",
+                    &[Uniform, Read, Read, Read, Read, ReadWrite],
+                )
                 .expect("a kernel");
             let sentinel = Pixel::new(Vec3::splat(-7.0), -7.0);
             let count = (width * height) as usize;
@@ -321,6 +325,9 @@ fn every_pixel_is_written() {
                         .binding(),
                     gpu.upload("materials", &world.materials)
                         .expect("materials")
+                        .binding(),
+                    gpu.upload("nodes", &[spherule::kernel::tree::Node::default()])
+                        .expect("nodes")
                         .binding(),
                     pixels.binding(),
                 ],

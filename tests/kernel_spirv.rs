@@ -57,10 +57,12 @@ fn the_modules_have_the_entry_points_that_the_host_calls() {
             "measure_arithmetic",
             "measure_layout",
             "occlude_rays",
+            "occlude_rays_in_tree",
             "render",
             "shade_hits",
             "trace_paths",
             "trace_rays",
+            "trace_rays_in_tree",
             "walk_inside_spheres",
         ];
         if needs_f64 {

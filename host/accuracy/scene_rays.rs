@@ -37,7 +37,7 @@ pub fn sample(scene: &Scene, seed: u64, count: usize) -> Result<Vec<(Ray, Sphere
     Ok(rays
         .into_par_iter()
         .filter_map(|ray| {
-            let hit = nearest_hit_in(Rung::Double.to_u32(), &ray, spheres, 0, u32::MAX);
+            let hit = nearest_hit_in(Rung::Double.to_u32(), &ray, &spheres[..], 0, u32::MAX);
             let sphere = if hit.is_some() {
                 spheres[hit.sphere as usize]
             } else {

@@ -2,19 +2,46 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use std::borrow::Cow;
+
 use glam::UVec2;
 use rayon::prelude::*;
 use spherule_kernel::film::render_pixel;
+use spherule_kernel::tree::Node;
 use spherule_kernel::{Launch, Pixel, Rung, Shading};
 
 use super::{Progress, Settings};
 use crate::error::Result;
 use crate::film;
-use crate::scene::World;
+use crate::scene::{World, tree};
 
 /// Rows in a band: small enough to share the work out evenly, large enough that handing it out
 /// costs nothing.
 const BAND_ROWS: usize = 4;
+
+/// A world, and the tree over it if one pays.
+#[derive(Clone, Debug)]
+pub struct Prepared<'a> {
+    world: Cow<'a, World>,
+    nodes: Vec<Node>,
+}
+
+impl<'a> Prepared<'a> {
+    /// Grows the tree.
+    #[must_use]
+    pub fn new(world: &'a World) -> Self {
+        match tree::grow(&world.spheres, &[], (0.0, 0.0)) {
+            Some(tree) => Self {
+                world: Cow::Owned(tree.sort_world(world)),
+                nodes: tree.nodes,
+            },
+            None => Self {
+                world: Cow::Borrowed(world),
+                nodes: Vec::new(),
+            },
+        }
+    }
+}
 
 /// Renders `launch`, which covers a whole image, on every thread of the pool.
 ///
@@ -23,7 +50,7 @@ const BAND_ROWS: usize = 4;
 /// [`OutOfMemory`](crate::Error::OutOfMemory) if the host has no room for the image.
 pub fn render(
     launch: &Launch,
-    world: &World,
+    world: &Prepared<'_>,
     settings: Settings,
     progress: Progress<'_>,
 ) -> Result<Vec<Pixel>> {
@@ -47,7 +74,7 @@ pub fn render(
 
 fn bands_on<const RUNG: u32>(
     launch: &Launch,
-    world: &World,
+    world: &Prepared<'_>,
     shading: Shading,
     progress: Progress<'_>,
     pixels: &mut [Pixel],
@@ -56,18 +83,23 @@ fn bands_on<const RUNG: u32>(
     const NORMALS: u32 = Shading::Normals.to_u32();
     const DEPTH: u32 = Shading::Depth.to_u32();
     const FLAT: u32 = Shading::Flat.to_u32();
-    match shading {
-        Shading::Lit => bands::<LIT, RUNG>(launch, world, progress, pixels),
-        Shading::Normals => bands::<NORMALS, RUNG>(launch, world, progress, pixels),
-        Shading::Depth => bands::<DEPTH, RUNG>(launch, world, progress, pixels),
-        Shading::Flat => bands::<FLAT, RUNG>(launch, world, progress, pixels),
-    }
+    let bands = match (shading, world.nodes.is_empty()) {
+        (Shading::Lit, true) => bands::<LIT, RUNG, 0>,
+        (Shading::Normals, true) => bands::<NORMALS, RUNG, 0>,
+        (Shading::Depth, true) => bands::<DEPTH, RUNG, 0>,
+        (Shading::Flat, true) => bands::<FLAT, RUNG, 0>,
+        (Shading::Lit, false) => bands::<LIT, RUNG, 1>,
+        (Shading::Normals, false) => bands::<NORMALS, RUNG, 1>,
+        (Shading::Depth, false) => bands::<DEPTH, RUNG, 1>,
+        (Shading::Flat, false) => bands::<FLAT, RUNG, 1>,
+    };
+    bands(launch, world, progress, pixels);
 }
 
-/// Compiled once for each shading mode and rung, as the GPU's pipeline is.
-fn bands<const SHADING: u32, const RUNG: u32>(
+/// Compiled once for each shading mode and rung, with a tree and without, as the GPU's pipeline is.
+fn bands<const SHADING: u32, const RUNG: u32, const HAS_TREE: u32>(
     launch: &Launch,
-    world: &World,
+    world: &Prepared<'_>,
     progress: Progress<'_>,
     pixels: &mut [Pixel],
 ) {
@@ -86,10 +118,12 @@ fn bands<const SHADING: u32, const RUNG: u32>(
                 *pixel = render_pixel(
                     SHADING,
                     RUNG,
+                    HAS_TREE,
                     launch,
-                    &world.spheres,
-                    &world.material_ids,
-                    &world.materials,
+                    &world.nodes,
+                    &world.world.spheres,
+                    &world.world.material_ids,
+                    &world.world.materials,
                     at,
                     *pixel,
                 );

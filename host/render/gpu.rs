@@ -3,6 +3,7 @@
 use std::time::{Duration, Instant};
 
 use glam::UVec2;
+use spherule_kernel::tree::Node;
 use spherule_kernel::{Launch, Material, Pixel, Shading, Sphere};
 
 use super::pace::Pace;
@@ -14,9 +15,12 @@ use crate::error::{Error, Result};
 use crate::film;
 use crate::kernel_module;
 use crate::scene::World;
+use crate::scene::tree::{self, Tree};
 
 /// The entry point's name, for messages.
 const ENTRY: &str = "render";
+/// What a ray takes in a tree, in intersections: a first guess, of which [`Pace`] learns more.
+const WORK_IN_TREE: u64 = 100;
 
 /// Renders `launch`, which covers a whole image, on `gpu`.
 ///
@@ -49,8 +53,10 @@ pub fn render_paced(
 ) -> Result<(Vec<Pixel>, Timings)> {
     let started = Instant::now();
     Canary::require_on_gpu(gpu, settings.rung)?;
+    let world = DeviceWorld::upload(gpu, world)?;
     let module = kernel_module::for_rung(settings.rung)?
-        .specialise(Shading::SPEC_ID, settings.shading.to_u32())?;
+        .specialise(Shading::SPEC_ID, settings.shading.to_u32())?
+        .specialise(Node::SPEC_ID, world.has_trees.into())?;
     let kernel = gpu.kernel(
         &module,
         ENTRY,
@@ -59,10 +65,10 @@ pub fn render_paced(
             Access::Read,
             Access::Read,
             Access::Read,
+            Access::Read,
             Access::ReadWrite,
         ],
     )?;
-    let world = DeviceWorld::upload(gpu, world)?;
     let size = launch.image_size;
     let tiles = Tiles::new::<Pixel>(gpu, size);
     let target = Target {
@@ -77,7 +83,7 @@ pub fn render_paced(
     let mut image = film::allocate(size.x, size.y)?;
     let mut origin = UVec2::ZERO;
     while origin.y < size.y {
-        let tile = tiles.at(origin, &pace, world.sphere_count);
+        let tile = tiles.at(origin, &pace, world.work);
         let launch = Launch {
             tile_origin: origin,
             tile_size: tile,
@@ -104,7 +110,7 @@ struct Target {
     pixels: Buffer<Pixel>,
 }
 
-/// Renders one tile against every sphere.
+/// Renders one tile against every part of the world.
 fn render_tile(
     gpu: &Gpu,
     kernel: &Kernel,
@@ -122,7 +128,11 @@ fn render_tile(
         launch.first_sphere = 0;
         loop {
             let left = part.spheres.len() as u32 - launch.first_sphere;
-            launch.sphere_count = left.min(pace.spheres(pixels));
+            launch.sphere_count = if world.has_trees {
+                left
+            } else {
+                left.min(pace.spheres(pixels))
+            };
             gpu.update(&target.launch, &launch)?;
             let time = gpu.launch(
                 kernel,
@@ -131,11 +141,17 @@ fn render_tile(
                     part.spheres.binding(),
                     part.material_ids.binding(),
                     world.materials.binding(),
+                    part.nodes.binding(),
                     target.pixels.binding(),
                 ],
                 kernel.workgroups_for([tile.x, tile.y, 1]),
             )?;
-            pace.learn(pixels * u64::from(launch.sphere_count), time.best());
+            let work = if world.has_trees {
+                world.work
+            } else {
+                u64::from(launch.sphere_count)
+            };
+            pace.learn(pixels * work, time.best());
             took += time.best();
             launch.first_of_tile = 0;
             launch.first_sphere += launch.sphere_count;
@@ -168,12 +184,15 @@ fn check_written(gpu: &Gpu, pixels: &[Pixel]) -> Result<()> {
 struct DeviceWorld {
     parts: Vec<Part>,
     materials: Buffer<Material>,
-    sphere_count: u64,
+    has_trees: bool,
+    /// What a pixel takes, in intersections.
+    work: u64,
 }
 
 struct Part {
     spheres: Buffer<Sphere>,
     material_ids: Buffer<u32>,
+    nodes: Buffer<Node>,
 }
 
 impl DeviceWorld {
@@ -183,28 +202,42 @@ impl DeviceWorld {
             .max_storage_buffer_binding_size
             .min(limits.max_buffer_size);
         let spheres_a_part = (binding / size_of::<Sphere>() as u64).max(1) as usize;
-        let parts = if world.spheres.is_empty() {
-            vec![Part {
-                spheres: gpu.upload("spheres", &[])?,
-                material_ids: gpu.upload("material ids", &[])?,
-            }]
-        } else {
-            world
-                .spheres
-                .chunks(spheres_a_part)
-                .zip(world.material_ids.chunks(spheres_a_part))
-                .map(|(spheres, ids)| {
-                    Ok(Part {
-                        spheres: gpu.upload("spheres", spheres)?,
-                        material_ids: gpu.upload("material ids", ids)?,
-                    })
-                })
-                .collect::<Result<_>>()?
+        let count = world.spheres.len();
+        let starts = (0..count.max(1)).step_by(spheres_a_part);
+        let runs: Vec<_> = starts
+            .map(|first| first..(first + spheres_a_part).min(count))
+            .collect();
+        // All have trees, or none has.
+        let trees: Option<Vec<Tree>> = runs
+            .iter()
+            .map(|run| tree::grow(&world.spheres[run.clone()], &[], (0.0, 0.0)))
+            .collect();
+        let parts = runs.iter().enumerate().map(|(index, run)| {
+            let spheres = &world.spheres[run.clone()];
+            let ids = &world.material_ids[run.clone()];
+            let part = match &trees {
+                Some(trees) => Part {
+                    spheres: gpu.upload("spheres", &trees[index].sort(spheres))?,
+                    material_ids: gpu.upload("material ids", &trees[index].sort(ids))?,
+                    nodes: gpu.upload("nodes", &trees[index].nodes)?,
+                },
+                None => Part {
+                    spheres: gpu.upload("spheres", spheres)?,
+                    material_ids: gpu.upload("material ids", ids)?,
+                    nodes: gpu.upload("nodes", &[])?,
+                },
+            };
+            Ok(part)
+        });
+        let work = match &trees {
+            Some(_) => WORK_IN_TREE,
+            None => count as u64,
         };
         Ok(Self {
-            parts,
+            parts: parts.collect::<Result<_>>()?,
             materials: gpu.upload("materials", &world.materials)?,
-            sphere_count: world.spheres.len() as u64,
+            has_trees: trees.is_some(),
+            work,
         })
     }
 }

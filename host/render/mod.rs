@@ -70,7 +70,7 @@ pub struct Rendered {
 /// Where the time of a render went.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Timings {
-    /// Compiling the kernel and uploading the world; zero on the CPU.
+    /// Growing the tree; on a GPU, compiling the kernel and uploading the world, too.
     pub setup: Duration,
     /// Of that, compiling the kernel for these effects and this rung.
     pub compile: Duration,
@@ -117,9 +117,12 @@ pub fn render(
     match device {
         Device::Cpu => {
             let started = Instant::now();
-            let pixels = cpu::render(&launch, &scene.world, settings, progress)?;
+            let world = cpu::Prepared::new(&scene.world);
+            let setup = started.elapsed();
+            let pixels = cpu::render(&launch, &world, settings, progress)?;
             let timings = Timings {
-                trace: started.elapsed(),
+                setup,
+                trace: started.elapsed() - setup,
                 ..Timings::default()
             };
             Ok(Rendered {

@@ -1,71 +1,109 @@
-//! Building the tree of boxes that the kernel's [`tree`](spherule_kernel::tree) walks: top down, by
-//! the surface area heuristic over bins (I. Wald, On fast Construction of SAH-based Bounding Volume
-//! Hierarchies, RT 2007), on every thread.
+//! Building the tree of boxes that the kernel's [`tree`](spherule_kernel::tree) walks, on every
+//! thread.
+//!
+//! Top down, by the surface area heuristic over bins (I. Wald, On fast Construction of SAH-based
+//! Bounding Volume Hierarchies, RT 2007). Two halves are split again until a node has its eight children;
+//! a part that fits into a node less high is left alone, so that nodes are full at the bottom, where
+//! most of them are. The spheres of one node, up to 24, are shared out among its children by the same
+//! heuristic, over every place where they could be split.
 
-use glam::{DVec3, Vec3};
+use glam::{DVec3, UVec4, Vec3, Vec4};
+use rayon::prelude::*;
 use spherule_kernel::Sphere;
-use spherule_kernel::tree::Node;
+use spherule_kernel::tree::{Extent, Node};
 
 use super::World;
 
-/// Bins along the axis that is split.
+/// Bins along an axis, for many spheres and for few.
 const BINS: usize = 16;
-/// What a box costs against a sphere.
-const BOX_COST: f32 = 0.5;
-/// The most spheres in a leaf.
-const MAX_LEAF: usize = 4;
+const FEW_BINS: usize = 8;
+const FEW: usize = 256;
+/// The most spheres of a node without nodes in it.
+const FULL: usize = Node::WIDTH * Node::MAX_LEAF;
 /// Below this many spheres a thread goes on alone.
-const GRAIN: usize = 4096;
+const GRAIN: usize = 1 << 13;
+/// From this many spheres on, threads share the work on one node.
+const SHARED: usize = 1 << 16;
+/// Beyond this depth nodes are halved, whatever that costs a ray: 8¹² is more than there can be.
+const HALVING_DEPTH: usize = Node::MAX_DEPTH - 12;
 /// Below this many spheres testing each is cheaper than a tree: measured by `spherule accuracy
 /// --scene` on worlds of growing size.
 pub const MIN_SPHERES: usize = 12;
 
-/// A world whose spheres stand in the order of a tree's leaves, and the tree.
-#[derive(Clone, Debug, Default)]
-pub struct Grown {
-    /// The world, in the order of the leaves.
-    pub world: World,
-    /// The nodes, in the order in which a ray visits them; empty where there is no tree.
+/// A tree over spheres.
+#[derive(Clone, Debug)]
+pub struct Tree {
+    /// The nodes, the first of them an [`Extent`].
     pub nodes: Vec<Node>,
+    /// The spheres in the order of the leaves, by their indices. The nodes name them by their places
+    /// in here.
+    pub order: Vec<u32>,
 }
 
+impl Tree {
+    /// What belongs to each sphere, in the order of the leaves.
+    #[must_use]
+    pub fn sort<T: Copy + Send + Sync>(&self, values: &[T]) -> Vec<T> {
+        self.order
+            .par_iter()
+            .with_min_len(GRAIN)
+            .map(|index| values[*index as usize])
+            .collect()
+    }
+
+    /// The world with its spheres in the order of the leaves.
+    #[must_use]
+    pub fn sort_world(&self, world: &World) -> World {
+        World {
+            spheres: self.sort(&world.spheres),
+            material_ids: self.sort(&world.material_ids),
+            velocities: if world.velocities.is_empty() {
+                Vec::new()
+            } else {
+                self.sort(&world.velocities)
+            },
+            materials: world.materials.clone(),
+            material_names: world.material_names.clone(),
+        }
+    }
+}
+
+/// A box. What the fourth coordinates hold does not matter.
 #[derive(Clone, Copy)]
 struct Bounds {
-    low: Vec3,
-    high: Vec3,
+    low: Vec4,
+    high: Vec4,
 }
 
 impl Bounds {
     const EMPTY: Self = Self {
-        low: Vec3::splat(f32::MAX),
-        high: Vec3::splat(f32::MIN),
+        low: Vec4::splat(f32::MAX),
+        high: Vec4::splat(f32::MIN),
     };
 
-    /// Of a sphere, wherever it is while the shutter is open, rounded outwards.
-    fn of(sphere: &Sphere, velocity: Vec3, shutter: (f32, f32)) -> Self {
-        let radius = DVec3::splat(f64::from(sphere.radius().abs()));
-        let at = |time: f32| {
-            let moved = velocity.as_dvec3() * f64::from(time);
-            sphere.center().as_dvec3() + moved
-        };
-        let (first, last) = (at(shutter.0), at(shutter.1));
-        let size = sphere.center().as_dvec3().abs() + first.abs().max(last.abs());
-        // The kernel moves a sphere in 32 bits, which rounds its centre twice.
-        let moves = velocity != Vec3::ZERO;
-        let outwards = |x: DVec3, up: bool| {
-            Vec3::from_array([0, 1, 2].map(|axis| {
-                let x = x[axis];
-                let slack = if moves { size[axis] * 4e-7 } else { 0.0 };
-                if up {
-                    ((x + slack) as f32).next_up()
-                } else {
-                    ((x - slack) as f32).next_down()
-                }
-            }))
-        };
+    /// Of a sphere at rest, rounded outwards.
+    fn of(sphere: &Sphere) -> Self {
+        let (center, radius) = (sphere.center(), sphere.radius().abs());
+        let low = (center - radius).to_array().map(f32::next_down);
+        let high = (center + radius).to_array().map(f32::next_up);
         Self {
-            low: outwards(first.min(last) - radius, false),
-            high: outwards(first.max(last) + radius, true),
+            low: Vec3::from_array(low).extend(0.0),
+            high: Vec3::from_array(high).extend(0.0),
+        }
+    }
+
+    /// Of a sphere, wherever it is while the shutter is open, rounded outwards.
+    fn of_moving(sphere: &Sphere, velocity: Vec3, shutter: (f32, f32)) -> Self {
+        let radius = DVec3::splat(f64::from(sphere.radius().abs()));
+        let at = |time: f32| sphere.center().as_dvec3() + velocity.as_dvec3() * f64::from(time);
+        let (first, last) = (at(shutter.0), at(shutter.1));
+        // The kernel moves a sphere in 32 bits, which rounds its centre twice.
+        let size = sphere.center().as_dvec3().abs() + first.abs().max(last.abs());
+        let low = first.min(last) - radius - size * 4e-7;
+        let high = first.max(last) + radius + size * 4e-7;
+        Self {
+            low: Vec3::from_array(low.to_array().map(|x| (x as f32).next_down())).extend(0.0),
+            high: Vec3::from_array(high.to_array().map(|x| (x as f32).next_up())).extend(0.0),
         }
     }
 
@@ -76,170 +114,642 @@ impl Bounds {
         }
     }
 
-    fn area(&self) -> f32 {
-        let side = (self.high - self.low).max(Vec3::ZERO);
-        side.x * side.y + side.y * side.z + side.z * side.x
+    fn of_all(items: &[Item]) -> Self {
+        items
+            .iter()
+            .fold(Self::EMPTY, |bounds, item| bounds.with(item.bounds()))
+    }
+
+    /// Half of the surface, or nothing for an empty box.
+    fn area(self) -> f32 {
+        let side = (self.high - self.low).max(Vec4::ZERO);
+        side.x * (side.y + side.z) + side.y * side.z
     }
 }
 
+/// A sphere's box, and its index in the bits of `low`'s fourth coordinate.
 #[derive(Clone, Copy)]
 struct Item {
-    index: u32,
-    bounds: Bounds,
-    middle: Vec3,
+    low: Vec4,
+    high: Vec4,
 }
 
-/// Grows a tree over `world`, whose spheres move while the shutter is open. Without one where it
-/// would not pay, where a number is not finite, or where there are more spheres than nodes can name.
+impl Item {
+    fn new(index: u32, bounds: Bounds) -> Self {
+        Self {
+            low: bounds.low.truncate().extend(f32::from_bits(index)),
+            high: bounds.high,
+        }
+    }
+
+    fn index(&self) -> u32 {
+        self.low.w.to_bits()
+    }
+
+    fn bounds(&self) -> Bounds {
+        Bounds {
+            low: self.low,
+            high: self.high,
+        }
+    }
+
+    /// Twice the middle.
+    fn middle(&self) -> Vec4 {
+        self.low + self.high
+    }
+}
+
+/// Grows a tree over spheres that move while the shutter is open; those beyond the end of `velocities` are
+/// at rest. Without one where it would not pay, where a number is not finite or beyond
+/// [`Node::MAX_COORDINATE`], or where there are more spheres than nodes can name.
 #[must_use]
-pub fn grow(world: &World, shutter: (f32, f32)) -> Option<Grown> {
-    let count = world.spheres.len();
+pub fn grow(spheres: &[Sphere], velocities: &[Vec3], shutter: (f32, f32)) -> Option<Tree> {
+    let count = spheres.len();
     if !(MIN_SPHERES..=Node::MAX_SPHERES as usize).contains(&count) {
         return None;
     }
-    let mut items: Vec<Item> = world
-        .spheres
-        .iter()
+    let still = Vec3::ZERO;
+    let mut items: Vec<Item> = spheres
+        .par_iter()
         .enumerate()
+        .with_min_len(GRAIN)
         .map(|(index, sphere)| {
-            let velocity = world.velocities.get(index).copied().unwrap_or(Vec3::ZERO);
-            let bounds = Bounds::of(sphere, velocity, shutter);
-            Item {
-                index: index as u32,
-                bounds,
-                middle: 0.5 * bounds.low + 0.5 * bounds.high,
-            }
+            let velocity = velocities.get(index).copied().unwrap_or(still);
+            let bounds = if velocity == still {
+                Bounds::of(sphere)
+            } else {
+                Bounds::of_moving(sphere, velocity, shutter)
+            };
+            Item::new(index as u32, bounds)
         })
         .collect();
-    let is_finite = |item: &Item| item.bounds.low.is_finite() && item.bounds.high.is_finite();
-    if !items.iter().all(is_finite) {
+    let limit = Vec3::splat(Node::MAX_COORDINATE);
+    let is_within = |item: &Item| {
+        let size = item.low.truncate().abs().max(item.high.truncate().abs());
+        size.cmplt(limit).all()
+    };
+    if !items.par_iter().with_min_len(GRAIN).all(is_within) {
         return None;
     }
-    let nodes = split(&mut items, 0);
-    let pick = |index: usize| items[index].index as usize;
-    let order = 0..count;
-    let mut ordered = World {
-        materials: world.materials.clone(),
-        material_names: world.material_names.clone(),
-        ..World::default()
+    let bounds = bounds_of_all(&items);
+    let smallest_radius = spheres
+        .par_iter()
+        .with_min_len(GRAIN)
+        .map(|sphere| sphere.radius().abs())
+        .reduce(|| f32::MAX, f32::min);
+    let extent = Extent {
+        low: bounds.low.truncate(),
+        high: bounds.high.truncate(),
+        smallest_radius,
     };
-    ordered.spheres = order.clone().map(|i| world.spheres[pick(i)]).collect();
-    ordered.material_ids = order.clone().map(|i| world.material_ids[pick(i)]).collect();
-    if world.velocities.len() == count {
-        ordered.velocities = order.map(|i| world.velocities[pick(i)]).collect();
-    }
-    Some(Grown {
-        world: ordered,
-        nodes,
-    })
+    let branch = Branch::grow(&mut items, bounds, 0);
+    let mut nodes = vec![extent.to_node(), Node::default()];
+    let mut order = Vec::with_capacity(count);
+    branch.put(Node::ROOT as usize, &mut nodes, &mut order);
+    Some(Tree { nodes, order })
 }
 
-/// The nodes of these items, which are put into the order of the leaves; the first of them is
-/// sphere `first`. Indices of nodes count from the first of these.
-fn split(items: &mut [Item], first: u32) -> Vec<Node> {
-    let bounds = items
-        .iter()
-        .fold(Bounds::EMPTY, |bounds, item| bounds.with(item.bounds));
-    let node = |after: u32, spheres: u32| Node {
-        low: bounds.low,
-        after,
-        high: bounds.high,
-        spheres,
-    };
-    let leaf = |items: &[Item]| vec![node(1, first << 4 | items.len() as u32)];
-    if items.len() == 1 {
-        return leaf(items);
+fn bounds_of_all(items: &[Item]) -> Bounds {
+    if items.len() < SHARED {
+        return Bounds::of_all(items);
     }
-    let middle = match best_split(items, &bounds) {
-        Some((axis, at)) => partition(items, |item| item.middle[axis] < at),
-        None if items.len() <= MAX_LEAF => return leaf(items),
-        // All in one place, or boxes that gain nothing: by halves.
-        None => items.len() / 2,
+    items
+        .par_chunks(GRAIN)
+        .map(Bounds::of_all)
+        .reduce(|| Bounds::EMPTY, Bounds::with)
+}
+
+/// A node and what is below it.
+struct Branch {
+    /// The node; its indices count from the starts of `nodes` and `order`.
+    node: Node,
+    /// What was grown below by one thread.
+    nodes: Vec<Node>,
+    order: Vec<u32>,
+    /// What was grown below by others: the children that are nodes.
+    branches: Vec<Branch>,
+}
+
+/// A child of a node: which items, and their box.
+struct Part<'a> {
+    items: &'a mut [Item],
+    bounds: Bounds,
+}
+
+impl Branch {
+    fn grow(items: &mut [Item], bounds: Bounds, depth: usize) -> Self {
+        let mut branch = Self {
+            node: Node::default(),
+            nodes: Vec::new(),
+            order: Vec::new(),
+            branches: Vec::new(),
+        };
+        if items.len() < GRAIN {
+            let count = items.len();
+            branch.nodes.reserve(count / 8);
+            branch.order.reserve(count);
+            branch.node = grow_alone(items, bounds, depth, &mut branch.nodes, &mut branch.order);
+            return branch;
+        }
+        let (node, inner) = make_node(items, bounds, depth, 0, &mut branch.order);
+        branch.node = node;
+        branch.branches = inner
+            .into_par_iter()
+            .map(|part| Self::grow(part.items, part.bounds, depth + 1))
+            .collect();
+        branch
+    }
+
+    /// Puts the node at `at`, and what is below it behind all others.
+    fn put(self, at: usize, nodes: &mut Vec<Node>, order: &mut Vec<u32>) {
+        let first_sphere = order.len() as u32;
+        let first_node = nodes.len() as u32;
+        let moved = |node: Node| {
+            let mut node = node;
+            node.links.x += first_node;
+            node.links.y += first_sphere;
+            node
+        };
+        order.extend(&self.order);
+        nodes[at] = moved(self.node);
+        if self.branches.is_empty() {
+            nodes.extend(self.nodes.into_iter().map(moved));
+        } else {
+            let first = nodes.len();
+            nodes.resize(first + self.branches.len(), Node::default());
+            for (index, branch) in self.branches.into_iter().enumerate() {
+                branch.put(first + index, nodes, order);
+            }
+        }
+    }
+}
+
+/// The node over these items; what is below it goes to the ends of `nodes` and `order`.
+fn grow_alone(
+    items: &mut [Item],
+    bounds: Bounds,
+    depth: usize,
+    nodes: &mut Vec<Node>,
+    order: &mut Vec<u32>,
+) -> Node {
+    let first = nodes.len();
+    let (node, inner) = make_node(items, bounds, depth, first as u32, order);
+    nodes.resize(first + inner.len(), Node::default());
+    for (index, part) in inner.into_iter().enumerate() {
+        let child = grow_alone(part.items, part.bounds, depth + 1, nodes, order);
+        nodes[first + index] = child;
+    }
+    node
+}
+
+/// A node over these items, whose first child that is a node is at `first_node`; its spheres go to
+/// the end of `order`. Returns those children, too.
+fn make_node<'a>(
+    items: &'a mut [Item],
+    bounds: Bounds,
+    depth: usize,
+    first_node: u32,
+    order: &mut Vec<u32>,
+) -> (Node, Vec<Part<'a>>) {
+    let mut parts = Vec::with_capacity(Node::WIDTH);
+    if items.len() <= FULL {
+        share_out(items, Node::WIDTH, &mut parts);
+    } else {
+        let limit = child_size(items.len());
+        parts.push(Part { items, bounds });
+        while parts.len() < Node::WIDTH {
+            // The largest of those that are too large for a lower node, and at last none is.
+            let widest = (0..parts.len())
+                .filter(|part| parts[*part].items.len() > limit)
+                .max_by(|a, b| parts[*a].bounds.area().total_cmp(&parts[*b].bounds.area()));
+            let Some(widest) = widest else { break };
+            let part = parts.swap_remove(widest);
+            let (left, right) = split(part, depth);
+            parts.extend([left, right]);
+        }
+    }
+    let places = places(&parts, &bounds);
+    let grid = Grid::over(&bounds);
+    let mut node = Node {
+        grid: grid.bits(),
+        links: UVec4::new(first_node, order.len() as u32, 0, 0),
+        ..Node::default()
     };
+    let mut sorted: [Option<Part>; Node::WIDTH] = [const { None }; Node::WIDTH];
+    for (part, place) in parts.into_iter().zip(places) {
+        sorted[place] = Some(part);
+    }
+    let mut inner = Vec::new();
+    let mut spheres = 0;
+    for (place, part) in sorted.into_iter().enumerate() {
+        let Some(part) = part else { continue };
+        grid.put(&part.bounds, place, &mut node);
+        let count = part.items.len();
+        let meta = if count <= Node::MAX_LEAF {
+            order.extend(part.items.iter().map(Item::index));
+            let meta = ((1 << count) - 1) << 5 | spheres;
+            spheres += count as u32;
+            meta
+        } else {
+            node.grid.w |= 1 << (24 + place);
+            inner.push(part);
+            1 << 5 | (24 + place as u32)
+        };
+        put_byte(&mut node.links, 8 + place, meta);
+    }
+    (node, inner)
+}
+
+/// The most items of a child of a node over this many: those that fit into nodes less high by one.
+fn child_size(count: usize) -> usize {
+    let mut size = FULL;
+    while size * Node::WIDTH < count {
+        size *= Node::WIDTH;
+    }
+    size
+}
+
+/// Shares at most [`FULL`] items out among at most `places` children, each with one to
+/// [`Node::MAX_LEAF`].
+fn share_out<'a>(items: &'a mut [Item], places: usize, parts: &mut Vec<Part<'a>>) {
+    let count = items.len();
+    if count == 1 || places == 1 {
+        let bounds = Bounds::of_all(items);
+        parts.push(Part { items, bounds });
+        return;
+    }
+    let axis = widest_axis(items);
+    items.sort_unstable_by(|a, b| {
+        let order = a.middle()[axis].total_cmp(&b.middle()[axis]);
+        order.then(a.index().cmp(&b.index()))
+    });
+    let mut right = [0.0; FULL];
+    let mut bounds = Bounds::EMPTY;
+    for at in (1..count).rev() {
+        bounds = bounds.with(items[at].bounds());
+        right[at] = bounds.area() * (count - at) as f32;
+    }
+    let mut best = (f32::MAX, count / 2, places / 2);
+    let mut bounds = Bounds::EMPTY;
+    for at in 1..count {
+        bounds = bounds.with(items[at - 1].bounds());
+        let cost = bounds.area() * at as f32 + right[at];
+        // As many places as it has items, in proportion, and as both sides need.
+        let rest = count - at;
+        let least = at.div_ceil(Node::MAX_LEAF);
+        let most = (places.saturating_sub(rest.div_ceil(Node::MAX_LEAF))).min(at);
+        if least <= most && cost < best.0 {
+            let even = (places * at + count / 2) / count;
+            best = (cost, at, even.clamp(least, most));
+        }
+    }
+    let (_, at, of_left) = best;
+    let (left, right) = items.split_at_mut(at);
+    share_out(left, of_left, parts);
+    share_out(right, places - of_left, parts);
+}
+
+fn widest_axis(items: &[Item]) -> usize {
+    let (mut low, mut high) = (Vec4::MAX, Vec4::MIN);
+    for item in items {
+        low = low.min(item.middle());
+        high = high.max(item.middle());
+    }
+    (high - low).truncate().max_position()
+}
+
+/// Splits a part in two, neither of them empty, where a ray pays least for it.
+fn split(part: Part<'_>, depth: usize) -> (Part<'_>, Part<'_>) {
+    let Part { items, .. } = part;
+    if depth < HALVING_DEPTH {
+        let best = if items.len() < FEW {
+            best_split::<FEW_BINS>(items)
+        } else {
+            best_split::<BINS>(items)
+        };
+        if let Some(best) = best {
+            let middle = best.partition(items);
+            if middle == best.count {
+                let (left, right) = items.split_at_mut(middle);
+                return (
+                    Part {
+                        items: left,
+                        bounds: best.left,
+                    },
+                    Part {
+                        items: right,
+                        bounds: best.right,
+                    },
+                );
+            }
+        }
+    }
+    // All in one place, or as deep as may be.
+    let middle = items.len() / 2;
+    let axis = widest_axis(items);
+    items.select_nth_unstable_by(middle, |a, b| {
+        let order = a.middle()[axis].total_cmp(&b.middle()[axis]);
+        order.then(a.index().cmp(&b.index()))
+    });
     let (left, right) = items.split_at_mut(middle);
-    let second = first + left.len() as u32;
-    let (left, right) = if left.len() + right.len() > GRAIN {
-        rayon::join(|| split(left, first), || split(right, second))
-    } else {
-        (split(left, first), split(right, second))
-    };
-    let mut nodes = Vec::with_capacity(1 + left.len() + right.len());
-    nodes.push(node((1 + left.len() + right.len()) as u32, 0));
-    let shifted = |part: &[Node], by: u32| -> Vec<Node> {
-        part.iter()
-            .map(|node| Node {
-                after: node.after + by,
-                ..*node
-            })
-            .collect()
-    };
-    nodes.extend(shifted(&left, 1));
-    nodes.extend(shifted(&right, 1 + left.len() as u32));
-    nodes
+    let (of_left, of_right) = (Bounds::of_all(left), Bounds::of_all(right));
+    (
+        Part {
+            items: left,
+            bounds: of_left,
+        },
+        Part {
+            items: right,
+            bounds: of_right,
+        },
+    )
 }
 
-/// The axis and the place of the cheapest split; `None` if a leaf is cheaper, or nothing can be
-/// split.
-fn best_split(items: &[Item], bounds: &Bounds) -> Option<(usize, f32)> {
-    let (low, high) = items.iter().fold(
-        (Vec3::splat(f32::MAX), Vec3::splat(f32::MIN)),
-        |(low, high), item| (low.min(item.middle), high.max(item.middle)),
-    );
-    let mut best = None;
-    let mut cheapest = if items.len() <= MAX_LEAF {
-        items.len() as f32
-    } else {
-        f32::MAX
-    };
-    for axis in 0..3 {
-        let width = high[axis] - low[axis];
-        if !(width > 0.0 && width.is_finite()) {
-            continue;
+/// Where the middles of items fall: the same arithmetic for all that ask.
+#[derive(Clone, Copy)]
+struct Places {
+    low: Vec4,
+    scale: Vec4,
+}
+
+impl Places {
+    fn bins(&self, item: &Item) -> Vec4 {
+        (item.middle() - self.low) * self.scale
+    }
+}
+
+/// A split, and what it makes.
+struct Split {
+    places: Places,
+    axis: usize,
+    bin: usize,
+    count: usize,
+    left: Bounds,
+    right: Bounds,
+}
+
+impl Split {
+    /// Puts the items of the left side first; says how many.
+    fn partition(&self, items: &mut [Item]) -> usize {
+        let end = self.bin as f32;
+        let is_left = |item: &Item| self.places.bins(item)[self.axis] < end;
+        if items.len() >= SHARED {
+            return partition_shared(items, is_left);
         }
-        let place = |bin: usize| low[axis] + width * (bin as f32 / BINS as f32);
-        let mut bins = [(Bounds::EMPTY, 0_usize); BINS];
-        for item in items {
-            let bin = ((item.middle[axis] - low[axis]) / width * BINS as f32) as usize;
-            // Where rounding puts an item into the wrong bin, the partition decides by place.
-            let bin = bin.min(BINS - 1);
-            bins[bin] = (bins[bin].0.with(item.bounds), bins[bin].1 + 1);
-        }
-        let mut right = [(0.0, 0); BINS];
-        let mut so_far = (Bounds::EMPTY, 0);
-        for bin in (1..BINS).rev() {
-            so_far = (so_far.0.with(bins[bin].0), so_far.1 + bins[bin].1);
-            right[bin] = (so_far.0.area(), so_far.1);
-        }
-        let mut left = (Bounds::EMPTY, 0);
-        for bin in 1..BINS {
-            left = (left.0.with(bins[bin - 1].0), left.1 + bins[bin - 1].1);
-            let (right_area, right_count) = right[bin];
-            if left.1 == 0 || right_count == 0 {
-                continue;
+        let (mut first, mut last) = (0, items.len());
+        loop {
+            while first < last && is_left(&items[first]) {
+                first += 1;
             }
-            let cost = 2.0 * BOX_COST
-                + (left.0.area() * left.1 as f32 + right_area * right_count as f32)
-                    / bounds.area().max(f32::MIN_POSITIVE);
-            if cost < cheapest {
+            while first < last && !is_left(&items[last - 1]) {
+                last -= 1;
+            }
+            if first >= last {
+                return first;
+            }
+            items.swap(first, last - 1);
+            first += 1;
+            last -= 1;
+        }
+    }
+}
+
+/// As a partition in place, by many threads and through a copy.
+fn partition_shared(items: &mut [Item], is_left: impl Fn(&Item) -> bool + Sync) -> usize {
+    let parts: Vec<(Vec<Item>, Vec<Item>)> = items
+        .par_chunks(GRAIN)
+        .map(|chunk| chunk.iter().partition(|item| is_left(item)))
+        .collect();
+    let count = parts.iter().map(|(left, _)| left.len()).sum();
+    let (mut left, mut right) = items.split_at_mut(count);
+    let mut copies = Vec::with_capacity(2 * parts.len());
+    for (of_left, of_right) in &parts {
+        let (here, rest) = left.split_at_mut(of_left.len());
+        copies.push((here, of_left));
+        left = rest;
+        let (here, rest) = right.split_at_mut(of_right.len());
+        copies.push((here, of_right));
+        right = rest;
+    }
+    copies
+        .into_par_iter()
+        .for_each(|(here, from)| here.copy_from_slice(from));
+    count
+}
+
+/// What fell into a bin.
+#[derive(Clone, Copy)]
+struct Bin {
+    bounds: Bounds,
+    count: usize,
+}
+
+impl Bin {
+    const EMPTY: Self = Self {
+        bounds: Bounds::EMPTY,
+        count: 0,
+    };
+
+    fn with(self, other: Self) -> Self {
+        Self {
+            bounds: self.bounds.with(other.bounds),
+            count: self.count + other.count,
+        }
+    }
+
+    fn cost(self) -> f32 {
+        self.bounds.area() * self.count as f32
+    }
+}
+
+type Bins<const N: usize> = [[Bin; N]; 3];
+
+fn bins_of<const N: usize>(items: &[Item], places: &Places) -> Bins<N> {
+    let mut bins = [[Bin::EMPTY; N]; 3];
+    for item in items {
+        let at = places.bins(item);
+        for (axis, bins) in bins.iter_mut().enumerate() {
+            let bin = &mut bins[(at[axis] as usize).min(N - 1)];
+            bin.bounds = bin.bounds.with(item.bounds());
+            bin.count += 1;
+        }
+    }
+    bins
+}
+
+/// The cheapest split between bins; `None` if all are in one place.
+fn best_split<const N: usize>(items: &[Item]) -> Option<Split> {
+    let of_middles = |items: &[Item]| {
+        items
+            .iter()
+            .fold((Vec4::MAX, Vec4::MIN), |(low, high), item| {
+                (low.min(item.middle()), high.max(item.middle()))
+            })
+    };
+    let is_shared = items.len() >= SHARED;
+    let (low, high) = if is_shared {
+        items.par_chunks(GRAIN).map(of_middles).reduce(
+            || (Vec4::MAX, Vec4::MIN),
+            |a, b| (a.0.min(b.0), a.1.max(b.1)),
+        )
+    } else {
+        of_middles(items)
+    };
+    let width = high - low;
+    // An axis without width has all in its first bin.
+    let scale = |width: f32| {
+        let scale = N as f32 * (1.0 - 1e-6) / width;
+        if scale.is_finite() { scale } else { 0.0 }
+    };
+    let places = Places {
+        low,
+        scale: Vec4::new(scale(width.x), scale(width.y), scale(width.z), 0.0),
+    };
+    let bins: Bins<N> = if is_shared {
+        let bins = items.par_chunks(GRAIN).map(|chunk| bins_of(chunk, &places));
+        bins.reduce(
+            || [[Bin::EMPTY; N]; 3],
+            |mut all, bins| {
+                for (all, bins) in all.iter_mut().zip(bins) {
+                    for (all, bin) in all.iter_mut().zip(bins) {
+                        *all = all.with(bin);
+                    }
+                }
+                all
+            },
+        )
+    } else {
+        bins_of(items, &places)
+    };
+
+    let mut best: Option<Split> = None;
+    let mut cheapest = f32::MAX;
+    for (axis, bins) in bins.iter().enumerate() {
+        let mut right = [Bin::EMPTY; N];
+        let mut sum = Bin::EMPTY;
+        for at in (1..N).rev() {
+            sum = sum.with(bins[at]);
+            right[at] = sum;
+        }
+        let mut left = Bin::EMPTY;
+        for at in 1..N {
+            left = left.with(bins[at - 1]);
+            let cost = left.cost() + right[at].cost();
+            if left.count > 0 && right[at].count > 0 && cost < cheapest {
                 cheapest = cost;
-                best = Some((axis, place(bin)));
+                best = Some(Split {
+                    places,
+                    axis,
+                    bin: at,
+                    count: left.count,
+                    left: left.bounds,
+                    right: right[at].bounds,
+                });
             }
         }
     }
-    // A place that rounding leaves at one end splits nothing.
-    best.filter(|(axis, at)| {
-        let before = items.iter().filter(|item| item.middle[*axis] < *at).count();
-        before > 0 && before < items.len()
-    })
+    best
 }
 
-/// Puts those that `belongs` before the others, keeping the order of both; says how many.
-fn partition(items: &mut [Item], belongs: impl Fn(&Item) -> bool) -> usize {
-    let (mut left, right): (Vec<Item>, Vec<Item>) = items.iter().partition(|item| belongs(item));
-    let count = left.len();
-    left.extend(right);
-    items.copy_from_slice(&left);
-    count
+/// A place for each child, so that a ray of any octant meets the nearer before the farther: bit k of
+/// a place says that it is on the high side along axis k. The best pair of child and place first.
+fn places(parts: &[Part<'_>], bounds: &Bounds) -> [usize; Node::WIDTH] {
+    let middle = bounds.low + bounds.high;
+    let offsets = parts
+        .iter()
+        .map(|part| (part.bounds.low + part.bounds.high) - middle);
+    let mut gains = [[0.0; Node::WIDTH]; Node::WIDTH];
+    for (gains, offset) in gains.iter_mut().zip(offsets) {
+        for (place, gain) in gains.iter_mut().enumerate() {
+            let signed = |axis: usize| {
+                if place >> axis & 1 == 1 {
+                    offset[axis]
+                } else {
+                    -offset[axis]
+                }
+            };
+            *gain = signed(0) + signed(1) + signed(2);
+        }
+    }
+    let mut places = [0; Node::WIDTH];
+    let (mut is_placed, mut is_taken) = ([false; Node::WIDTH], [false; Node::WIDTH]);
+    for _ in 0..parts.len() {
+        let mut best = (f32::MIN, 0, 0);
+        for child in (0..parts.len()).filter(|child| !is_placed[*child]) {
+            for place in (0..Node::WIDTH).filter(|place| !is_taken[*place]) {
+                if gains[child][place] > best.0 {
+                    best = (gains[child][place], child, place);
+                }
+            }
+        }
+        let (_, child, place) = best;
+        places[child] = place;
+        is_placed[child] = true;
+        is_taken[place] = true;
+    }
+    places
+}
+
+/// The grid of a node's boxes.
+struct Grid {
+    corner: Vec3,
+    /// The biased exponent of the step along each axis.
+    exponents: [u32; 3],
+}
+
+impl Grid {
+    fn over(bounds: &Bounds) -> Self {
+        let corner = bounds.low.truncate();
+        let exponents = [0, 1, 2].map(|axis| {
+            let side = f64::from(bounds.high[axis]) - f64::from(bounds.low[axis]);
+            // The smallest power of two of which 255 reach; never so small that it is no normal number.
+            let bits = (side / 255.0).to_bits();
+            let is_between = bits & ((1 << 52) - 1) != 0;
+            let exponent = (bits >> 52) as i64 - 1023 + i64::from(is_between);
+            (exponent + 127).clamp(1, 254) as u32
+        });
+        Self { corner, exponents }
+    }
+
+    fn bits(&self) -> UVec4 {
+        let [x, y, z] = self.exponents;
+        UVec4::new(
+            self.corner.x.to_bits(),
+            self.corner.y.to_bits(),
+            self.corner.z.to_bits(),
+            x | y << 8 | z << 16,
+        )
+    }
+
+    /// Puts a child's box at its place, rounded outwards.
+    fn put(&self, bounds: &Bounds, place: usize, node: &mut Node) {
+        for axis in 0..3 {
+            let per_step = f64::from_bits((1023 + 127 - u64::from(self.exponents[axis])) << 52);
+            let along = |x: f32| (f64::from(x) - f64::from(self.corner[axis])) * per_step;
+            let low = along(bounds.low[axis]).floor().clamp(0.0, 255.0);
+            let high = along(bounds.high[axis]).ceil().clamp(0.0, 255.0);
+            let (low, high) = (low as u32, high as u32);
+            match axis {
+                0 => {
+                    put_byte(&mut node.low_xy, place, low);
+                    put_byte(&mut node.low_z_high_x, 8 + place, high);
+                }
+                1 => {
+                    put_byte(&mut node.low_xy, 8 + place, low);
+                    put_byte(&mut node.high_yz, place, high);
+                }
+                _ => {
+                    put_byte(&mut node.low_z_high_x, place, low);
+                    put_byte(&mut node.high_yz, 8 + place, high);
+                }
+            }
+        }
+    }
+}
+
+/// Puts a byte where there is none yet.
+fn put_byte(words: &mut UVec4, at: usize, byte: u32) {
+    words[at / 4] |= byte << (at % 4 * 8);
 }
 
 #[cfg(test)]
@@ -247,9 +757,26 @@ mod tests {
     use super::*;
     use crate::accuracy::families::Family;
     use crate::accuracy::random::Random;
-    use spherule_kernel::nearest::{is_occluded, nearest_hit_in};
+    use spherule_kernel::nearest::nearest_hit_in;
     use spherule_kernel::tree::{is_occluded_in_tree, nearest_hit_in_tree};
-    use spherule_kernel::{Effects, Ray, Rung};
+    use spherule_kernel::{Ray, Rung};
+
+    struct Grown {
+        world: World,
+        nodes: Vec<Node>,
+        order: Vec<u32>,
+    }
+
+    impl Grown {
+        fn over(world: &World) -> Self {
+            let tree = grow(&world.spheres, &[], (0.0, 0.0)).expect("a tree");
+            Self {
+                world: tree.sort_world(world),
+                nodes: tree.nodes,
+                order: tree.order,
+            }
+        }
+    }
 
     fn worlds() -> Vec<(&'static str, World)> {
         let mut random = Random::new(71);
@@ -294,7 +821,7 @@ mod tests {
             for (_, sphere) in Family::ALL.iter().flat_map(|f| f.sample(3, 40)) {
                 world.add(sphere, 0);
             }
-            let grown = grow(&world, (0.0, 0.0)).expect("a tree");
+            let grown = Grown::over(&world);
             let mut random = Random::new(5);
             let mut rays: Vec<Ray> = (0..2000)
                 .map(|i| {
@@ -314,56 +841,103 @@ mod tests {
                 rays.push(Ray::new(center - axis * 20.0, axis));
             }
             let mut hits = 0;
-            // The lower rungs find hits where there are none, and a box keeps them from some.
-            for rung in [Rung::Compensated, Rung::Double, Rung::Certified] {
+            let spheres = &grown.world.spheres[..];
+            for rung in Rung::ALL {
                 let rung = rung.to_u32();
                 for ray in &rays {
-                    let brute = nearest_hit_in(rung, ray, &world.spheres, 0, u32::MAX);
-                    let none = Effects::NONE;
-                    let found = nearest_hit_in_tree(
-                        none,
-                        rung,
-                        ray,
-                        &grown.nodes,
-                        &grown.world.spheres,
-                        &[],
-                        0.0,
-                    );
-                    assert_eq!(found.t, brute.t, "{name} {ray:?}");
+                    let brute = nearest_hit_in(rung, ray, spheres, 0, u32::MAX);
+                    let found = nearest_hit_in_tree(rung, ray, &grown.nodes, spheres);
+                    assert_eq!(found, brute, "{name} {ray:?}");
                     hits += usize::from(found.is_some());
-                    let shadow = is_occluded_in_tree(
-                        none,
-                        rung,
-                        ray,
-                        &grown.nodes,
-                        &grown.world.spheres,
-                        &[],
-                        0.0,
-                    );
-                    assert_eq!(shadow, is_occluded(rung, ray, &world.spheres));
+                    let shadow = is_occluded_in_tree(rung, ray, &grown.nodes, spheres);
+                    assert_eq!(shadow, brute.is_some());
                 }
             }
             assert!(hits > 3000, "{name}: {hits} hits tell little");
         }
     }
 
+    /// The boxes of a node's children, as the kernel reads them, and their links.
+    fn children(node: &Node) -> Vec<(DVec3, DVec3, u32)> {
+        let corner = [node.grid.x, node.grid.y, node.grid.z].map(f32::from_bits);
+        let byte = |words: UVec4, at: usize| words[at / 4] >> (at % 4 * 8) & 0xff;
+        (0..Node::WIDTH)
+            .map(|place| {
+                let low = [
+                    byte(node.low_xy, place),
+                    byte(node.low_xy, 8 + place),
+                    byte(node.low_z_high_x, place),
+                ];
+                let high = [
+                    byte(node.low_z_high_x, 8 + place),
+                    byte(node.high_yz, place),
+                    byte(node.high_yz, 8 + place),
+                ];
+                let at = |steps: [u32; 3]| {
+                    DVec3::from_array([0, 1, 2].map(|axis| {
+                        let exponent = (node.grid.w >> (8 * axis) & 0xff) as i32 - 127;
+                        f64::from(corner[axis]) + f64::from(steps[axis]) * 2_f64.powi(exponent)
+                    }))
+                };
+                (at(low), at(high), byte(node.links, 8 + place))
+            })
+            .collect()
+    }
+
+    /// Walks everything below a node: each sphere once, inside of the box that its child has, and each
+    /// node's own boxes, which its parent must enclose as far as the parent's spheres go.
+    fn visit(
+        grown: &Grown,
+        at: usize,
+        depth: usize,
+        seen: &mut [bool],
+        nodes: &mut usize,
+    ) -> Bounds {
+        assert!(depth < Node::MAX_DEPTH);
+        *nodes += 1;
+        let node = grown.nodes[at];
+        let mut all = Bounds::EMPTY;
+        let mut inner = 0;
+        for (place, (low, high, meta)) in children(&node).into_iter().enumerate() {
+            let is_node = node.grid.w >> (24 + place) & 1 == 1;
+            let inside = if is_node {
+                assert_eq!(meta, 32 + 24 + place as u32);
+                let child = node.links.x as usize + inner;
+                inner += 1;
+                visit(grown, child, depth + 1, seen, nodes)
+            } else {
+                let mut bounds = Bounds::EMPTY;
+                for index in 0..(meta >> 5).count_ones() {
+                    let index = (node.links.y + (meta & 31) + index) as usize;
+                    assert!(!seen[index]);
+                    seen[index] = true;
+                    bounds = bounds.with(Bounds::of(&grown.world.spheres[index]));
+                }
+                bounds
+            };
+            if meta != 0 {
+                let inner_low = inside.low.truncate().as_dvec3();
+                let inner_high = inside.high.truncate().as_dvec3();
+                assert!(low.cmple(inner_low).all() && high.cmpge(inner_high).all());
+            }
+            all = all.with(inside);
+        }
+        all
+    }
+
     #[test]
     fn every_sphere_is_in_one_leaf_and_inside_of_its_boxes() {
         for (name, world) in worlds() {
-            let grown = grow(&world, (0.0, 0.0)).expect("a tree");
-            let mut next = 0;
-            for (at, node) in grown.nodes.iter().enumerate() {
-                assert!(node.after as usize > at && node.after as usize <= grown.nodes.len());
-                if node.spheres > 0 {
-                    assert_eq!(node.spheres >> 4, next, "{name}");
-                    next += node.spheres & 15;
-                }
-                let inside = at + 1..node.after as usize;
-                for child in &grown.nodes[inside] {
-                    assert!(child.low.cmpge(node.low).all() && child.high.cmple(node.high).all());
-                }
+            let grown = Grown::over(&world);
+            let mut seen = vec![false; world.spheres.len()];
+            let mut nodes = 1;
+            let root = Node::ROOT as usize;
+            let _ = visit(&grown, root, 0, &mut seen, &mut nodes);
+            assert!(seen.iter().all(|seen| *seen), "{name}");
+            assert_eq!(nodes, grown.nodes.len(), "{name}");
+            for (sphere, of) in grown.world.spheres.iter().zip(&grown.order) {
+                assert_eq!(*sphere, world.spheres[*of as usize]);
             }
-            assert_eq!(next as usize, world.spheres.len());
         }
     }
 
@@ -371,6 +945,6 @@ mod tests {
     fn a_world_that_is_not_finite_gets_no_tree() {
         let (_, mut world) = worlds().remove(0);
         world.add(Sphere::new(Vec3::NAN, 1.0), 0);
-        assert!(grow(&world, (0.0, 0.0)).is_none());
+        assert!(grow(&world.spheres, &[], (0.0, 0.0)).is_none());
     }
 }

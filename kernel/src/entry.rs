@@ -16,7 +16,7 @@ use crate::nearest::{is_occluded, nearest_hit_in};
 use crate::optics::{Fresnel, Incidence};
 use crate::precision::intersect;
 use crate::shading::shade;
-use crate::tree::Node;
+use crate::tree::{Node, is_occluded_in_tree, nearest_hit_in_tree};
 use crate::walk::{Walk, walk_inside};
 use crate::{
     Accumulator, Effects, Hit, Launch, Light, Material, PathLaunch, Pixel, Ray, Sphere, Surface,
@@ -29,11 +29,13 @@ pub fn render(
     #[spirv(global_invocation_id)] id: UVec3,
     #[spirv(spec_constant(id = 0, default = 0))] shading: u32,
     #[spirv(spec_constant(id = 1, default = 1))] rung: u32,
+    #[spirv(spec_constant(id = 4, default = 0))] has_tree: u32,
     #[spirv(uniform, descriptor_set = 0, binding = 0)] launch: &Launch,
     #[spirv(storage_buffer, descriptor_set = 0, binding = 1)] spheres: &[Sphere],
     #[spirv(storage_buffer, descriptor_set = 0, binding = 2)] material_ids: &[u32],
     #[spirv(storage_buffer, descriptor_set = 0, binding = 3)] materials: &[Material],
-    #[spirv(storage_buffer, descriptor_set = 0, binding = 4)] pixels: &mut [Pixel],
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 4)] nodes: &[Node],
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 5)] pixels: &mut [Pixel],
 ) {
     let pixel = UVec2::new(id.x, id.y);
     if pixel.x < launch.tile_size.x && pixel.y < launch.tile_size.y {
@@ -42,7 +44,9 @@ pub fn render(
             pixels[index] = render_pixel(
                 shading,
                 rung,
+                has_tree,
                 launch,
+                nodes,
                 spheres,
                 material_ids,
                 materials,
@@ -112,6 +116,22 @@ pub fn trace_rays(
     }
 }
 
+/// [`trace_rays`] among the spheres of a tree.
+#[spirv(compute(threads(64), entry_point_name = "trace_rays_in_tree"))]
+pub fn trace_rays_in_tree(
+    #[spirv(global_invocation_id)] id: UVec3,
+    #[spirv(spec_constant(id = 1, default = 1))] rung: u32,
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 0)] rays: &[Ray],
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 1)] spheres: &[Sphere],
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 2)] nodes: &[Node],
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 3)] hits: &mut [Hit],
+) {
+    let index = id.x as usize;
+    if index < rays.len() && index < hits.len() {
+        hits[index] = nearest_hit_in_tree(rung, &rays[index], nodes, spheres);
+    }
+}
+
 /// Writes 1 for each ray that any sphere occludes, 0 for the others.
 #[spirv(compute(threads(64), entry_point_name = "occlude_rays"))]
 pub fn occlude_rays(
@@ -124,6 +144,22 @@ pub fn occlude_rays(
     let index = id.x as usize;
     if index < rays.len() && index < occluded.len() {
         occluded[index] = u32::from(is_occluded(rung, &rays[index], spheres));
+    }
+}
+
+/// [`occlude_rays`] by the spheres of a tree.
+#[spirv(compute(threads(64), entry_point_name = "occlude_rays_in_tree"))]
+pub fn occlude_rays_in_tree(
+    #[spirv(global_invocation_id)] id: UVec3,
+    #[spirv(spec_constant(id = 1, default = 1))] rung: u32,
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 0)] rays: &[Ray],
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 1)] spheres: &[Sphere],
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 2)] nodes: &[Node],
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 3)] occluded: &mut [u32],
+) {
+    let index = id.x as usize;
+    if index < rays.len() && index < occluded.len() {
+        occluded[index] = u32::from(is_occluded_in_tree(rung, &rays[index], nodes, spheres));
     }
 }
 

@@ -15,6 +15,7 @@ use crate::shading::shade;
 use crate::sky::Sky;
 use crate::sphere::Sphere;
 use crate::surface::Surface;
+use crate::tree::{Node, nearest_hit_in_tree};
 
 /// One launch: a tile of the image against a run of the spheres.
 ///
@@ -95,6 +96,7 @@ impl Pixel {
 /// [`Shading::to_u32`](crate::Shading::to_u32) and
 /// [`Rung::to_u32`](crate::precision::Rung::to_u32). Returns what the pixel must hold now.
 ///
+/// With `has_tree` 1 the spheres are those of the tree `nodes`, whatever run of them the launch names.
 /// `spheres` and `material_ids` run in parallel; an index into `materials` that leaves the
 /// table takes its last entry.
 #[expect(
@@ -106,7 +108,9 @@ impl Pixel {
 pub fn render_pixel(
     shading: u32,
     rung: u32,
+    has_tree: u32,
     launch: &Launch,
+    nodes: &[Node],
     spheres: &[Sphere],
     material_ids: &[u32],
     materials: &[Material],
@@ -121,13 +125,12 @@ pub fn render_pixel(
         result = previous;
         ray.t_max = previous.depth();
     }
-    let hit = nearest_hit_in(
-        rung,
-        &ray,
-        spheres,
-        launch.first_sphere,
-        launch.sphere_count,
-    );
+    let hit = if has_tree == 1 {
+        nearest_hit_in_tree(rung, &ray, nodes, spheres)
+    } else {
+        let (first, count) = (launch.first_sphere, launch.sphere_count);
+        nearest_hit_in(rung, &ray, spheres, first, count)
+    };
     if hit.is_some() {
         let index = hit.sphere as usize;
         // SAFETY: a hit names a sphere of the slice.

@@ -23,7 +23,7 @@ use crate::hit::Hit;
 use crate::light::{self, Light};
 use crate::material::{Material, material_of};
 use crate::microfacet::{RoughMetal, SMOOTHEST, schlick};
-use crate::nearest::{is_occluded_at, nearest_hit_at, sphere_at};
+use crate::nearest::{MovingSpheres, Spheres as _, is_occluded, nearest_hit_in};
 use crate::optics::{Incidence, reflect};
 use crate::precision::intersect;
 use crate::random::Sampler;
@@ -64,31 +64,41 @@ pub struct Scenery<'a> {
 }
 
 impl Scenery<'_> {
-    /// The sphere with this index where it is at `time`.
+    /// The spheres where they are at `time`.
+    #[inline]
+    fn spheres_at(&self, time: f32) -> MovingSpheres<'_> {
+        MovingSpheres {
+            spheres: self.spheres,
+            velocities: self.velocities,
+            time,
+            effects: self.effects,
+        }
+    }
+
+    /// The sphere with this index, which is below their number, where it is at `time`.
     #[inline]
     fn sphere(&self, index: usize, time: f32) -> Sphere {
-        sphere_at(self.effects, self.spheres, self.velocities, index, time)
+        // SAFETY: hits and lights name spheres of the world.
+        unsafe { self.spheres_at(time).sphere(index as u32) }
     }
 
     #[inline]
     fn nearest_hit(&self, ray: &Ray, time: f32) -> Hit {
-        let (effects, rung) = (self.effects, self.rung);
-        let (spheres, velocities) = (self.spheres, self.velocities);
+        let spheres = self.spheres_at(time);
         if self.has_tree == 1 {
-            nearest_hit_in_tree(effects, rung, ray, self.nodes, spheres, velocities, time)
+            nearest_hit_in_tree(self.rung, ray, self.nodes, &spheres)
         } else {
-            nearest_hit_at(effects, rung, ray, spheres, velocities, time)
+            nearest_hit_in(self.rung, ray, &spheres, 0, u32::MAX)
         }
     }
 
     #[inline]
     fn is_occluded(&self, ray: &Ray, time: f32) -> bool {
-        let (effects, rung) = (self.effects, self.rung);
-        let (spheres, velocities) = (self.spheres, self.velocities);
+        let spheres = self.spheres_at(time);
         if self.has_tree == 1 {
-            is_occluded_in_tree(effects, rung, ray, self.nodes, spheres, velocities, time)
+            is_occluded_in_tree(self.rung, ray, self.nodes, &spheres)
         } else {
-            is_occluded_at(effects, rung, ray, spheres, velocities, time)
+            is_occluded(self.rung, ray, &spheres)
         }
     }
 }

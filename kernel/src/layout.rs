@@ -113,10 +113,11 @@ layouts! {
     "Accumulator.color_alpha" = offset_of!(Accumulator, color_alpha);
     "Accumulator.statistics" = offset_of!(Accumulator, statistics);
     "size of Node" = size_of::<Node>();
-    "Node.low" = offset_of!(Node, low);
-    "Node.after" = offset_of!(Node, after);
-    "Node.high" = offset_of!(Node, high);
-    "Node.spheres" = offset_of!(Node, spheres);
+    "Node.grid" = offset_of!(Node, grid);
+    "Node.links" = offset_of!(Node, links);
+    "Node.low_xy" = offset_of!(Node, low_xy);
+    "Node.low_z_high_x" = offset_of!(Node, low_z_high_x);
+    "Node.high_yz" = offset_of!(Node, high_yz);
     "size of Operands" = size_of::<Operands>();
     "Operands.a" = offset_of!(Operands, a);
     "Operands.b" = offset_of!(Operands, b);

@@ -9,6 +9,65 @@ use crate::precision::{Rung, intersect};
 use crate::ray::Ray;
 use crate::sphere::Sphere;
 
+/// Spheres by their indices: a slice of them, or [`MovingSpheres`].
+pub trait Spheres {
+    /// How many there are.
+    fn count(&self) -> u32;
+
+    /// The sphere with this index.
+    ///
+    /// # Safety
+    ///
+    /// `index` is below [`Spheres::count`].
+    unsafe fn sphere(&self, index: u32) -> Sphere;
+}
+
+impl Spheres for [Sphere] {
+    #[inline]
+    fn count(&self) -> u32 {
+        self.len().min(u32::MAX as usize) as u32
+    }
+
+    #[inline]
+    unsafe fn sphere(&self, index: u32) -> Sphere {
+        // SAFETY: the caller's.
+        unsafe { *self.index_unchecked(index as usize) }
+    }
+}
+
+/// Spheres where they are at one time.
+#[derive(Clone, Copy, Debug)]
+pub struct MovingSpheres<'a> {
+    /// The spheres where they are at time zero.
+    pub spheres: &'a [Sphere],
+    /// How each moves, in scene units per unit of time; those beyond its end are at rest.
+    pub velocities: &'a [Vec4],
+    /// The time.
+    pub time: f32,
+    /// The effects of the pipeline: without [`Effects::MOTION_BLUR`] all are at rest.
+    pub effects: Effects,
+}
+
+impl Spheres for MovingSpheres<'_> {
+    #[inline]
+    fn count(&self) -> u32 {
+        self.spheres.count()
+    }
+
+    #[inline]
+    unsafe fn sphere(&self, index: u32) -> Sphere {
+        // SAFETY: the caller's.
+        let sphere = unsafe { self.spheres.sphere(index) };
+        let index = index as usize;
+        if self.effects.any(Effects::MOTION_BLUR) && index < self.velocities.len() {
+            let moved = sphere.center() + self.velocities[index].truncate() * self.time;
+            Sphere::new(moved, sphere.radius())
+        } else {
+            sphere
+        }
+    }
+}
+
 /// The nearest hit of `ray` among `spheres`; of two equally near, the one of lower index.
 ///
 /// ```
@@ -29,13 +88,18 @@ pub fn nearest_hit(ray: &Ray, spheres: &[Sphere]) -> Hit {
     nearest_hit_in(Rung::default().to_u32(), ray, spheres, 0, u32::MAX)
 }
 
-/// [`nearest_hit`] on this rung (a value of [`Rung::to_u32`]), among
-/// `spheres[first..first + count]`; a range that leaves the slice is cut to it. The hit's index
-/// counts from the start of the slice.
+/// [`nearest_hit`] on this rung (a value of [`Rung::to_u32`]), among the `count` spheres from
+/// `first` on; a range that leaves them is cut to them. The hit's index counts from the first of all.
 #[inline]
 #[must_use]
-pub fn nearest_hit_in(rung: u32, ray: &Ray, spheres: &[Sphere], first: u32, count: u32) -> Hit {
-    let len = spheres.len().min(u32::MAX as usize) as u32;
+pub fn nearest_hit_in<S: Spheres + ?Sized>(
+    rung: u32,
+    ray: &Ray,
+    spheres: &S,
+    first: u32,
+    count: u32,
+) -> Hit {
+    let len = spheres.count();
     let first = first.min(len);
     let end = first + count.min(len - first);
 
@@ -43,8 +107,8 @@ pub fn nearest_hit_in(rung: u32, ray: &Ray, spheres: &[Sphere], first: u32, coun
     let mut hit = Hit::NONE;
     let mut index = first;
     while index < end {
-        // SAFETY: `end` is at most the length of the slice.
-        let sphere = unsafe { *spheres.index_unchecked(index as usize) };
+        // SAFETY: `end` is at most the number of spheres.
+        let sphere = unsafe { spheres.sphere(index) };
         let t = intersect(rung, sphere, &ray);
         if t < ray.t_max {
             ray.t_max = t;
@@ -59,82 +123,12 @@ pub fn nearest_hit_in(rung: u32, ray: &Ray, spheres: &[Sphere], first: u32, coun
 /// something, because both ask the same questions of the same interval.
 #[inline]
 #[must_use]
-pub fn is_occluded(rung: u32, ray: &Ray, spheres: &[Sphere]) -> bool {
+pub fn is_occluded<S: Spheres + ?Sized>(rung: u32, ray: &Ray, spheres: &S) -> bool {
     let mut index = 0;
     let mut occluded = false;
-    while (index < spheres.len()) & !occluded {
-        // SAFETY: `index` is below the length of the slice.
-        let sphere = unsafe { *spheres.index_unchecked(index) };
-        occluded = intersect(rung, sphere, ray) < ray.t_max;
-        index += 1;
-    }
-    occluded
-}
-
-/// The sphere with this index, below the length of the slice, where it is at `time` if spheres move.
-#[inline]
-#[must_use]
-pub(crate) fn sphere_at(
-    effects: Effects,
-    spheres: &[Sphere],
-    velocities: &[Vec4],
-    index: usize,
-    time: f32,
-) -> Sphere {
-    // SAFETY: the callers' indices are below the length of the slice.
-    let sphere = unsafe { *spheres.index_unchecked(index) };
-    if effects.any(Effects::MOTION_BLUR) && index < velocities.len() {
-        let moved = sphere.center() + velocities[index].truncate() * time;
-        Sphere::new(moved, sphere.radius())
-    } else {
-        sphere
-    }
-}
-
-/// [`nearest_hit_in`] among all spheres, where each is at `time`.
-#[inline]
-#[must_use]
-pub fn nearest_hit_at(
-    effects: Effects,
-    rung: u32,
-    ray: &Ray,
-    spheres: &[Sphere],
-    velocities: &[Vec4],
-    time: f32,
-) -> Hit {
-    let mut ray = *ray;
-    let mut hit = Hit::NONE;
-    let mut index = 0;
-    while index < spheres.len() {
-        let sphere = sphere_at(effects, spheres, velocities, index, time);
-        let t = intersect(rung, sphere, &ray);
-        if t < ray.t_max {
-            ray.t_max = t;
-            hit = Hit {
-                t,
-                sphere: index as u32,
-            };
-        }
-        index += 1;
-    }
-    hit
-}
-
-/// [`is_occluded`] by spheres that are where they are at `time`.
-#[inline]
-#[must_use]
-pub fn is_occluded_at(
-    effects: Effects,
-    rung: u32,
-    ray: &Ray,
-    spheres: &[Sphere],
-    velocities: &[Vec4],
-    time: f32,
-) -> bool {
-    let mut index = 0;
-    let mut occluded = false;
-    while (index < spheres.len()) & !occluded {
-        let sphere = sphere_at(effects, spheres, velocities, index, time);
+    while (index < spheres.count()) & !occluded {
+        // SAFETY: `index` is below the number of spheres.
+        let sphere = unsafe { spheres.sphere(index) };
         occluded = intersect(rung, sphere, ray) < ray.t_max;
         index += 1;
     }

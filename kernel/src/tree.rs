@@ -1,177 +1,414 @@
 //! [`Node`]: a tree of boxes around the spheres, so that a ray looks at few of them. Runs on the GPU
 //! and on the CPU.
 //!
-//! The nodes stand in the order in which a ray visits them, each with the index of the node that
-//! comes after its whole subtree: a ray that misses a box goes there, and nothing needs a stack.
-//! Spheres stand in the order of the leaves, so that of two equally near the one of lower index is
-//! found first, as without a tree.
+//! A node holds up to eight children, whose boxes stand on a grid of 256 steps a side, a byte a
+//! coordinate, and takes 80 bytes; so does the walk, front to back by the octant of the ray's direction
+//! and with whole groups of children on the stack (H. Ylitie, T. Karras, S. Laine, Efficient Incoherent
+//! Ray Traversal on GPUs Through Compressed Wide BVHs, HPG 2017).
 //!
-//! No box is missed that holds a hit. Boxes are rounded outwards; the differences low − O and high − O
-//! keep their signs and are off by u = 2⁻²⁴ at most, the reciprocals and the products by a few u more.
-//! A box is passed by only where its far side, taken farther by 2⁻¹⁸ of its distance, is before its near
-//! side or before the ray's interval, or its near side behind that (after T. Ize, Robust BVH Ray Traversal, J. Comput.
-//! Graph. Tech. 2 (2013)).
+//! # No hit is lost
+//!
+//! Boxes are rounded outwards to their grid. With u = 2⁻²⁴, P the grid's corner, s its step and q
+//! a byte, a plane is met at
+//!
+//! > (P − O)/d + q s/d,
+//!
+//! computed to within 5u(|P − O| + 255 s)/|d|, fused or not, division off by two units; the far
+//! planes are moved away and the near ones nearer by 16u(|P − O| + 256 s)/|d|. A direction's
+//! component below 2⁻⁶⁴ of its largest is taken for that: the ray is off by 2⁻⁶⁴ of its way then.
+//!
+//! The rungs below [`Rung::Compensated`] find hits where there are none, and a box must not keep them
+//! from what they find without a tree. With D the distance from O to the farthest
+//! corner of all, each box is wider by what the rung may be off:
+//! * [`robust`](crate::precision::robust): 32u D. The foot of its perpendicular is off by 12u|o|, and
+//!   its t by what an error of 4u(o·o + r²) in c makes of it: 16u max(|o|, r) at most, |b| being at
+//!   least |o|/2 or else r at least 0.86|o|.
+//! * [`textbook`](crate::precision::textbook): √(r² + 24u D²) − r, r the smallest radius. Its hits are on the sphere
+//!   whose r² is off by that.
+//!
+//! Coordinates are to be below 2⁶⁰.
 
 use bytemuck::{Pod, Zeroable};
-use glam::{Vec3, Vec4};
+use glam::{UVec2, UVec4, Vec3};
 use spirv_std::arch::IndexUnchecked;
+// On the CPU, std has `f32::sqrt`.
+#[cfg(target_arch = "spirv")]
+use spirv_std::num_traits::Float as _;
 
-use crate::effects::Effects;
 use crate::hit::Hit;
-use crate::nearest::sphere_at;
-use crate::precision::intersect;
+use crate::nearest::Spheres;
+use crate::precision::{Rung, intersect};
 use crate::ray::Ray;
-use crate::sphere::Sphere;
 
-/// A box, and what is in it: other nodes, or spheres. Lengths are in scene units.
+/// Up to eight boxes on a grid, and what is in them: a node each, or one to three spheres.
+///
+/// The first of a tree's nodes is none: it is the [`Extent`]. The second is the root.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Node {
-    /// The corner of the smallest coordinates.
-    pub low: Vec3,
-    /// The index of the node after the last one inside of this one.
-    pub after: u32,
-    /// The corner of the largest coordinates.
-    pub high: Vec3,
-    /// For a leaf, the index of its first sphere times 16, plus how many it has, from 1 to 15; zero
-    /// for a node that holds nodes.
-    pub spheres: u32,
+    /// The bits of the grid's corner x, y, z; then, a byte each from the lowest, the biased exponents
+    /// of its steps along x, y, z, and which children are nodes.
+    pub grid: UVec4,
+    /// The index of the first child that is a node, the others follow; the index of the first sphere in
+    /// any child, the others follow; and a byte a child. Of a node, 32 + 24 + its place; of
+    /// spheres, how many, in unary, times 32, plus where they start, counted from the first; 0 for none.
+    pub links: UVec4,
+    /// The eight children's smallest x, a byte each, then their smallest y.
+    pub low_xy: UVec4,
+    /// The eight children's smallest z, then their largest x.
+    pub low_z_high_x: UVec4,
+    /// The eight children's largest y, then their largest z.
+    pub high_yz: UVec4,
 }
 
 impl Node {
+    /// The most children.
+    pub const WIDTH: usize = 8;
+    /// The most spheres in a child.
+    pub const MAX_LEAF: usize = 3;
+    /// The most nodes on the way from the root to a leaf.
+    pub const MAX_DEPTH: usize = 32;
     /// The most spheres that a tree has room to name.
-    pub const MAX_SPHERES: u32 = 1 << 28;
+    pub const MAX_SPHERES: u32 = 1 << 30;
+    /// Where the root is.
+    pub const ROOT: u32 = 1;
     /// The specialisation constant that is 1 where the pipeline is for worlds with a tree.
     pub const SPEC_ID: u32 = 4;
+    /// What coordinates must stay below, for the walk's numbers to be finite.
+    pub const MAX_COORDINATE: f32 = (1_u64 << 60) as f32;
 }
 
-/// 2⁻¹⁸: how much farther, for its size, each far end is taken to be.
-const SLACK: f32 = 1.0 / (1 << 18) as f32;
+/// What a tree's first node says instead: of all spheres, the box and the smallest radius.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Extent {
+    /// The corner of the smallest coordinates.
+    pub low: Vec3,
+    /// The corner of the largest coordinates.
+    pub high: Vec3,
+    /// The smallest radius.
+    pub smallest_radius: f32,
+}
+
+impl Extent {
+    /// As the tree's first node.
+    #[must_use]
+    pub fn to_node(self) -> Node {
+        let (low, high) = (self.low, self.high);
+        let bits =
+            |v: Vec3, w: f32| UVec4::new(v.x.to_bits(), v.y.to_bits(), v.z.to_bits(), w.to_bits());
+        Node {
+            grid: bits(low, self.smallest_radius),
+            links: bits(high, 0.0),
+            ..Node::default()
+        }
+    }
+
+    /// Out of the tree's first node.
+    #[inline]
+    #[must_use]
+    pub fn of_node(node: &Node) -> Self {
+        Self {
+            low: corner(node.grid),
+            high: corner(node.links),
+            smallest_radius: f32::from_bits(node.grid.w),
+        }
+    }
+
+    /// How much wider boxes must be for this rung, in scene units, around a ray from `origin`.
+    #[inline]
+    fn widening(&self, rung: u32, origin: Vec3) -> f32 {
+        let far = (self.low - origin).abs().max((self.high - origin).abs());
+        // At least the distance to the farthest corner.
+        let distance = far.x + far.y + far.z;
+        if rung == Rung::Robust.to_u32() {
+            distance * (32.0 * U)
+        } else {
+            let r = self.smallest_radius;
+            let squared = far.dot(far) * (24.0 * U);
+            // √(r² + e) − r, without cancellation.
+            squared / ((r * r + squared).sqrt() + r).max(f32::MIN_POSITIVE)
+        }
+    }
+}
+
+#[inline]
+fn corner(bits: UVec4) -> Vec3 {
+    Vec3::new(
+        f32::from_bits(bits.x),
+        f32::from_bits(bits.y),
+        f32::from_bits(bits.z),
+    )
+}
+
+/// 2⁻²⁴.
+const U: f32 = 1.0 / (1 << 24) as f32;
 
 /// What stays the same of a ray as it meets box after box.
 #[derive(Clone, Copy)]
 struct Slabs {
     origin: Vec3,
+    /// One over the direction, whose largest component was brought between 1 and 2.
     inverse: Vec3,
+    /// How much sooner planes are met for the rung's sake, and how much later.
+    widening: Vec3,
+    /// What a parameter of the ray is, times this, as the planes count it.
+    unit: f32,
+    /// The start of the ray's interval.
+    start: f32,
+    /// Bit k set where the direction is positive along axis k; the same in each byte.
+    octant: u32,
 }
 
 impl Slabs {
     #[inline]
-    fn of(ray: &Ray) -> Self {
+    fn of(rung: u32, ray: &Ray, nodes: &[Node]) -> Self {
         let d = ray.direction;
+        let largest = d.abs().max_element().max(f32::MIN_POSITIVE);
+        // 2 to the exponent of the largest component, and one over it.
+        let exponent = largest.to_bits() & 0x7f80_0000;
+        let unit = f32::from_bits(exponent);
+        let d = d * f32::from_bits(0x7f00_0000 - exponent);
+        let inverse = Vec3::new(reciprocal(d.x), reciprocal(d.y), reciprocal(d.z));
+        let mut widening = Vec3::ZERO;
+        if rung < Rung::Compensated.to_u32() {
+            // SAFETY: the callers' trees have a first node.
+            let world = Extent::of_node(unsafe { nodes.index_unchecked(0) });
+            widening = inverse.abs() * world.widening(rung, ray.origin);
+        }
+        let positive = |x: f32, bit: u32| if x < 0.0 { 0 } else { bit };
+        let octant = positive(d.x, 1) | positive(d.y, 2) | positive(d.z, 4);
         Self {
             origin: ray.origin,
-            inverse: Vec3::new(reciprocal(d.x), reciprocal(d.y), reciprocal(d.z)),
+            inverse,
+            widening,
+            unit,
+            start: ray.t_min * unit,
+            octant: octant * 0x0101_0101,
         }
     }
 
-    /// Whether the ray may meet the box between `t_min` and `t_max`.
+    /// The children that the ray may meet before `end`: bits 24 to 31 for nodes, the first to be
+    /// visited highest, and below them a bit for each sphere.
     #[inline]
-    fn may_meet(&self, node: &Node, t_min: f32, t_max: f32) -> bool {
-        let low = (node.low - self.origin) * self.inverse;
-        let high = (node.high - self.origin) * self.inverse;
-        let near = low.min(high);
-        let far = low.max(high);
-        let far = far + far.abs() * SLACK;
-        let near = near.x.max(near.y).max(near.z);
-        let far = far.x.min(far.y).min(far.z);
-        (near <= far) & (far >= t_min) & (near <= t_max + t_max.abs() * SLACK)
+    fn meets(&self, node: &Node, end: f32) -> u32 {
+        let exponents = node.grid.w;
+        let step = Vec3::new(
+            f32::from_bits((exponents & 0xff) << 23),
+            f32::from_bits((exponents & 0xff00) << 15),
+            f32::from_bits((exponents & 0x00ff_0000) << 7),
+        ) * self.inverse;
+        let offset = (corner(node.grid) - self.origin) * self.inverse;
+        let slack = (offset.abs() + step.abs() * 256.0) * (16.0 * U) + self.widening;
+        let four = FourBoxes {
+            step,
+            near: offset - slack,
+            far: offset + slack,
+            start: self.start,
+            end: end + end.abs() * (16.0 * U),
+        };
+        let (low_xy, mixed, high_yz) = (node.low_xy, node.low_z_high_x, node.high_yz);
+        let (mut near_x, mut far_x) =
+            (UVec2::new(low_xy.x, low_xy.y), UVec2::new(mixed.z, mixed.w));
+        let (mut near_y, mut far_y) = (
+            UVec2::new(low_xy.z, low_xy.w),
+            UVec2::new(high_yz.x, high_yz.y),
+        );
+        let (mut near_z, mut far_z) = (
+            UVec2::new(mixed.x, mixed.y),
+            UVec2::new(high_yz.z, high_yz.w),
+        );
+        if self.inverse.x < 0.0 {
+            (near_x, far_x) = (far_x, near_x);
+        }
+        if self.inverse.y < 0.0 {
+            (near_y, far_y) = (far_y, near_y);
+        }
+        if self.inverse.z < 0.0 {
+            (near_z, far_z) = (far_z, near_z);
+        }
+        let first = [near_x.x, near_y.x, near_z.x, far_x.x, far_y.x, far_z.x];
+        let last = [near_x.y, near_y.y, near_z.y, far_x.y, far_y.y, far_z.y];
+        four.meets(first, self.places(node.links.z)) | four.meets(last, self.places(node.links.w))
+    }
+
+    /// The places of nodes among four children, by the order of the visit.
+    #[inline]
+    fn places(&self, meta: u32) -> u32 {
+        // Bits 3 and 4 of a byte are both set in that of a node and in no other.
+        let is_node = (meta & (meta << 1) & 0x1010_1010) >> 4;
+        meta ^ (self.octant & (is_node * 7))
     }
 }
 
-/// 1/x; for an x whose reciprocal floats have not, the largest number, so that no product
-/// of zero is undefined.
+/// Planes of four boxes, as parameters along a ray: q·step + near or far, q a byte.
+#[derive(Clone, Copy)]
+struct FourBoxes {
+    step: Vec3,
+    near: Vec3,
+    far: Vec3,
+    start: f32,
+    end: f32,
+}
+
+impl FourBoxes {
+    /// The bits of those of the four that are met; `planes` are near x, y, z and far x, y, z.
+    #[inline]
+    fn meets(&self, planes: [u32; 6], meta: u32) -> u32 {
+        self.meets_one(planes, meta, 0)
+            | self.meets_one(planes, meta, 8)
+            | self.meets_one(planes, meta, 16)
+            | self.meets_one(planes, meta, 24)
+    }
+
+    #[inline]
+    fn meets_one(&self, planes: [u32; 6], meta: u32, shift: u32) -> u32 {
+        let byte = |word: u32| ((word >> shift) & 0xff) as f32;
+        let near_x = byte(planes[0]) * self.step.x + self.near.x;
+        let near_y = byte(planes[1]) * self.step.y + self.near.y;
+        let near_z = byte(planes[2]) * self.step.z + self.near.z;
+        let far_x = byte(planes[3]) * self.step.x + self.far.x;
+        let far_y = byte(planes[4]) * self.step.y + self.far.y;
+        let far_z = byte(planes[5]) * self.step.z + self.far.z;
+        let near = near_x.max(near_y).max(near_z.max(self.start));
+        let far = far_x.min(far_y).min(far_z.min(self.end));
+        let meta = meta >> shift;
+        let bits = ((meta >> 5) & 7) << (meta & 31);
+        if near <= far { bits } else { 0 }
+    }
+}
+
+/// 1/x; for an x below 2⁻⁶⁴, 2⁶⁴ with its sign.
 #[inline]
 fn reciprocal(x: f32) -> f32 {
-    if x.abs() > 2.0 * f32::MIN_POSITIVE {
+    const SMALLEST: f32 = 1.0 / (1_u128 << 64) as f32;
+    const LARGEST: f32 = (1_u128 << 64) as f32;
+    if x.abs() > SMALLEST {
         1.0 / x
+    } else if x < 0.0 {
+        -LARGEST
     } else {
-        f32::MAX
+        LARGEST
     }
 }
 
-/// The nearest hit of `ray` on this rung among the spheres of a tree, where each is at `time`.
+/// The nearest hit of `ray` on this rung among the spheres of a tree; of two equally near, the one
+/// of lower index.
 #[inline]
 #[must_use]
-pub fn nearest_hit_in_tree(
-    effects: Effects,
+pub fn nearest_hit_in_tree<S: Spheres + ?Sized>(
     rung: u32,
     ray: &Ray,
     nodes: &[Node],
-    spheres: &[Sphere],
-    velocities: &[Vec4],
-    time: f32,
+    spheres: &S,
 ) -> Hit {
-    let slabs = Slabs::of(ray);
-    let mut ray = *ray;
+    walk::<false, S>(rung, ray, nodes, spheres)
+}
+
+/// Whether `ray` hits any sphere of a tree.
+#[inline]
+#[must_use]
+pub fn is_occluded_in_tree<S: Spheres + ?Sized>(
+    rung: u32,
+    ray: &Ray,
+    nodes: &[Node],
+    spheres: &S,
+) -> bool {
+    walk::<true, S>(rung, ray, nodes, spheres).is_some()
+}
+
+/// The nearest hit, or any.
+#[inline]
+fn walk<const ANY: bool, S: Spheres + ?Sized>(
+    rung: u32,
+    ray: &Ray,
+    nodes: &[Node],
+    spheres: &S,
+) -> Hit {
     let mut hit = Hit::NONE;
-    let mut at = 0;
-    while at < nodes.len() {
-        // SAFETY: `at` is below the length of the slice.
-        let node = unsafe { *nodes.index_unchecked(at) };
-        let mut next = node.after;
-        if slabs.may_meet(&node, ray.t_min, ray.t_max) {
-            if node.spheres == 0 {
-                next = at as u32 + 1;
-            }
-            let mut index = node.spheres >> 4;
-            let end = (index + (node.spheres & 15)).min(spheres.len() as u32);
-            while index < end {
-                let sphere = sphere_at(effects, spheres, velocities, index as usize, time);
+    if nodes.len() <= Node::ROOT as usize {
+        return hit;
+    }
+    let slabs = Slabs::of(rung, ray, nodes);
+    let mut ray = *ray;
+    let mut end = ray.t_max * slabs.unit;
+
+    let mut stack = [UVec2::ZERO; Node::MAX_DEPTH];
+    let mut height = 0;
+    // A group of nodes: where the first is, and which are to be visited (bits 24 to 31), which are
+    // there (bits 0 to 7). The root is one alone.
+    let mut first = Node::ROOT;
+    let mut group = 0x8000_0000_u32;
+    loop {
+        // The next to be visited.
+        let bit = 31 - group.leading_zeros();
+        group ^= 1 << bit;
+        if group > 0x00ff_ffff && height < Node::MAX_DEPTH {
+            // SAFETY: `height` is below the array's length.
+            unsafe { *stack.index_unchecked_mut(height) = UVec2::new(first, group) };
+            height += 1;
+        }
+        let place = (bit - 24) ^ (slabs.octant & 7);
+        let before = (group & 0xff & ((1 << place) - 1)).count_ones();
+        // A tree's links are within it; that this one is one is not known, so that it is cut.
+        let at = (first + before).min(nodes.len() as u32 - 1);
+        // SAFETY: `at` is below the slice's length, which is not zero.
+        let node = unsafe { *nodes.index_unchecked(at as usize) };
+        let met = slabs.meets(&node, end);
+
+        let mut left = met & 0x00ff_ffff;
+        while left != 0 {
+            let index = node.links.y + left.trailing_zeros();
+            left &= left - 1;
+            if index < spheres.count() {
+                // SAFETY: `index` is below the number of spheres.
+                let sphere = unsafe { spheres.sphere(index) };
                 let t = intersect(rung, sphere, &ray);
                 if t < ray.t_max {
-                    ray.t_max = t;
-                    hit = Hit { t, sphere: index };
+                    if ANY {
+                        return Hit { t, sphere: index };
+                    }
+                    if (t < hit.t) | (index < hit.sphere) {
+                        hit = Hit { t, sphere: index };
+                    }
+                    // One as near is still of interest, if its index is lower.
+                    ray.t_max = next_up(t);
+                    end = ray.t_max * slabs.unit;
                 }
-                index += 1;
             }
         }
-        // Forward, whatever the node says.
-        at = (next as usize).max(at + 1);
+
+        first = node.links.x;
+        group = (met & 0xff00_0000) | (node.grid.w >> 24);
+        if met <= 0x00ff_ffff {
+            if height == 0 {
+                return hit;
+            }
+            height -= 1;
+            // SAFETY: `height` is below the array's length.
+            let next = unsafe { *stack.index_unchecked(height) };
+            first = next.x;
+            group = next.y;
+        }
     }
-    hit
 }
 
-/// Whether `ray` hits any sphere of a tree, where each is at `time`.
+/// The next larger float.
 #[inline]
-#[must_use]
-pub fn is_occluded_in_tree(
-    effects: Effects,
-    rung: u32,
-    ray: &Ray,
-    nodes: &[Node],
-    spheres: &[Sphere],
-    velocities: &[Vec4],
-    time: f32,
-) -> bool {
-    let slabs = Slabs::of(ray);
-    let mut found = false;
-    let mut at = 0;
-    while (at < nodes.len()) & !found {
-        // SAFETY: `at` is below the length of the slice.
-        let node = unsafe { *nodes.index_unchecked(at) };
-        let mut next = node.after;
-        if slabs.may_meet(&node, ray.t_min, ray.t_max) {
-            if node.spheres == 0 {
-                next = at as u32 + 1;
-            }
-            let mut index = node.spheres >> 4;
-            let end = (index + (node.spheres & 15)).min(spheres.len() as u32);
-            while (index < end) & !found {
-                let sphere = sphere_at(effects, spheres, velocities, index as usize, time);
-                found = intersect(rung, sphere, ray) < ray.t_max;
-                index += 1;
-            }
-        }
-        // Forward, whatever the node says.
-        at = (next as usize).max(at + 1);
-    }
-    found
+fn next_up(x: f32) -> f32 {
+    let bits = x.to_bits();
+    f32::from_bits(if x > 0.0 {
+        bits + 1
+    } else if x < 0.0 {
+        bits - 1
+    } else {
+        1
+    })
 }
 
 const _: () = {
-    assert!(size_of::<Node>() == 32);
-    assert!(core::mem::offset_of!(Node, after) == 12);
-    assert!(core::mem::offset_of!(Node, high) == 16);
-    assert!(core::mem::offset_of!(Node, spheres) == 28);
+    assert!(size_of::<Node>() == 80);
+    assert!(core::mem::offset_of!(Node, links) == 16);
+    assert!(core::mem::offset_of!(Node, low_xy) == 32);
+    assert!(core::mem::offset_of!(Node, low_z_high_x) == 48);
+    assert!(core::mem::offset_of!(Node, high_yz) == 64);
 };

@@ -14,7 +14,7 @@ use super::EffectChoice;
 use crate::error::Result;
 use crate::render::whole_image;
 use crate::scene::surroundings::EnvironmentImage;
-use crate::scene::tree::{self, Grown};
+use crate::scene::tree;
 use crate::scene::{Scene, World};
 
 /// What the kernel is told of a scene, besides its world.
@@ -58,10 +58,11 @@ impl Prepared {
         } else {
             (0.0, 0.0)
         };
-        let Grown { world, nodes } = tree::grow(&scene.world, shutter).unwrap_or_else(|| Grown {
-            world: scene.world.clone(),
-            nodes: Vec::new(),
-        });
+        let (world, nodes) =
+            match tree::grow(&scene.world.spheres, &scene.world.velocities, shutter) {
+                Some(tree) => (tree.sort_world(&scene.world), tree.nodes),
+                None => (scene.world.clone(), Vec::new()),
+            };
         let (lights, mut sky, sphere_light_probability) = lights(scene, &world);
         if let Some(image) = scene.sky.as_ref().and_then(|sky| sky.image.as_ref()) {
             sky.environment_size = glam::UVec2::new(image.width, image.height);
