@@ -11,7 +11,9 @@
 //! | [`scene`] | what is rendered: TOML scenes, molecules from PDB and XYZ files |
 //! | [`device`] | adapters, buffers, kernels, launches, and their errors |
 //! | [`mod@render`] | a scene on a device, GPU or CPU |
+//! | [`trace`] | rays by the million, without an image |
 //! | [`accuracy`] | how right the rungs of the ladder are, decided by an exact oracle |
+//! | [`bench`] | how fast rays of every kind are |
 //! | [`film`] | images: encoding, files, comparison |
 //! | [`error`] | [`Error`]: what can go wrong, and how to mend it |
 //! | [`kernel_module`] | the kernel's SPIR-V that this build embeds |
@@ -20,6 +22,7 @@
 #![deny(missing_docs)]
 
 pub mod accuracy;
+pub mod bench;
 pub mod cli;
 pub mod device;
 pub mod error;
@@ -27,6 +30,7 @@ pub mod film;
 pub mod kernel_module;
 pub mod render;
 pub mod scene;
+pub mod trace;
 
 pub use device::{Device, DeviceChoice, Gpu};
 pub use error::{Error, Result};

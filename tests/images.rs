@@ -266,16 +266,18 @@ fn splitting_changes_nothing() {
         );
         let launch = launch_of(&scene);
         let shading = Shading::Lit.into();
+        let prepare = |gpu| {
+            render::gpu::Prepared::new(gpu, &scene.world, shading).expect("a world on the GPU")
+        };
         let (expected, _) =
-            render::gpu::render(&whole, &launch, &scene.world, shading, QUIET).expect("whole");
+            render::gpu::render(&whole, &launch, &prepare(&whole), QUIET).expect("whole");
         for (gpu, pace) in [
             (&split, Pace::default()),
             (&whole, Pace::starting_at(97 * 20)),
             (&whole, Pace::starting_at(50)),
         ] {
             let (pixels, _) =
-                render::gpu::render_paced(gpu, &launch, &scene.world, shading, QUIET, pace)
-                    .expect("split");
+                render::gpu::render_paced(gpu, &launch, &prepare(gpu), QUIET, pace).expect("split");
             assert!(pixels == expected, "{pace:?}");
         }
     }

@@ -11,6 +11,7 @@ use crate::accuracy::families::Family;
 use crate::device::DeviceChoice;
 use crate::film::file::Format;
 use crate::render::paths::EffectChoice;
+use crate::scene::tree::Acceleration;
 use crate::scene::{MAX_IMAGE_SIDE, MAX_SAMPLES};
 
 /// A ray tracer for spheres, whose kernel is Rust on the GPU and on the CPU.
@@ -34,6 +35,8 @@ pub(super) enum Command {
     Accuracy(AccuracyArguments),
     /// Say which effects a scene calls for, by what, and what each costs here
     Explain(ExplainArguments),
+    /// Measure how fast rays of every kind are here, by worlds from two spheres to ten million
+    Bench(BenchArguments),
 }
 
 #[derive(Debug, Args)]
@@ -186,6 +189,96 @@ pub(super) struct ExplainArguments {
     /// Print JSON
     #[arg(long)]
     pub(super) json: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Scenes: S2, S46, S500, R10k, R100k, R1M, R10M, L1M, L1M-rotated and X1M; docs/performance.md says what they are.\n\
+    R10M takes about 3 GB of memory."
+)]
+pub(super) struct BenchArguments {
+    /// What to measure: auto (a real GPU, else the CPU), gpu, cpu, or a part of an adapter's name
+    #[arg(long, value_name = "auto|gpu|cpu|NAME", default_value = "auto")]
+    pub(super) device: DeviceChoice,
+
+    /// Measure this scene only: a name, or a file (.toml, .pdb, .ent or .xyz); may be given again [default: all but R10M]
+    #[arg(long, value_name = "NAME|FILE")]
+    pub(super) scene: Vec<String>,
+
+    /// The image's size in pixels
+    #[arg(long, value_name = "WxH", default_value = "1920x1080")]
+    pub(super) size: Size,
+
+    /// How a ray is intersected with a sphere
+    #[arg(long, value_enum, default_value = "robust")]
+    pub(super) precision: BenchPrecision,
+
+    /// Whether spheres stand in a tree: auto where it pays, tree always, brute-force never
+    #[arg(long, value_enum, default_value = "auto")]
+    pub(super) acceleration: AccelerationChoice,
+
+    /// How often each kind of ray is timed; the median counts
+    #[arg(long, value_name = "N", default_value_t = 7, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub(super) rounds: u32,
+
+    /// Write the numbers as JSON; - writes to stdout
+    #[arg(long, value_name = "FILE.json")]
+    pub(super) json: Option<PathBuf>,
+
+    /// Measure nothing: write the scene's spheres, rays and hits as files into this folder, for other programs
+    #[arg(
+        long,
+        value_name = "FOLDER",
+        requires = "scene",
+        conflicts_with = "json"
+    )]
+    pub(super) export: Option<PathBuf>,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(super) enum BenchPrecision {
+    /// The quadratic formula in 32-bit floats
+    Textbook,
+    /// 32-bit floats, arranged so that small distant spheres keep their digits
+    Robust,
+    /// Pairs of 32-bit floats, about 48 bits, on any device
+    Compensated,
+    /// 64-bit floats, where the device has them
+    Double,
+    /// 32-bit floats with a bound on their error, and more digits only where that cannot decide
+    Certified,
+}
+
+impl From<BenchPrecision> for Rung {
+    fn from(precision: BenchPrecision) -> Self {
+        match precision {
+            BenchPrecision::Textbook => Self::Textbook,
+            BenchPrecision::Robust => Self::Robust,
+            BenchPrecision::Compensated => Self::Compensated,
+            BenchPrecision::Double => Self::Double,
+            BenchPrecision::Certified => Self::Certified,
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(super) enum AccelerationChoice {
+    /// A tree where there are enough spheres for one to pay
+    Auto,
+    /// A tree always
+    Tree,
+    /// Each ray against every sphere
+    BruteForce,
+}
+
+impl From<AccelerationChoice> for Acceleration {
+    fn from(choice: AccelerationChoice) -> Self {
+        match choice {
+            AccelerationChoice::Auto => Self::Auto,
+            AccelerationChoice::Tree => Self::Tree,
+            AccelerationChoice::BruteForce => Self::BruteForce,
+        }
+    }
 }
 
 /// What `accuracy` measures.

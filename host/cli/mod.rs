@@ -4,6 +4,7 @@
 
 mod accuracy;
 mod args;
+mod bench;
 mod check;
 mod devices;
 mod explain;
@@ -34,6 +35,7 @@ pub fn main() -> ExitCode {
         Command::Check(arguments) => check::run(&arguments),
         Command::Accuracy(arguments) => accuracy::run(&arguments),
         Command::Explain(arguments) => explain::run(&arguments),
+        Command::Bench(arguments) => bench::run(&arguments),
     };
     match done {
         Ok(code) => code,

@@ -18,6 +18,7 @@ use crate::film::compare::{Comparison, Tolerance};
 use crate::render::paths::{Reached, StoppedBy};
 use crate::render::{Rendered, Settings, render};
 use crate::scene::Scene;
+use crate::scene::tree::Acceleration;
 
 /// What `--stats` writes.
 #[derive(Debug, Serialize)]
@@ -102,6 +103,7 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<ExitCode> {
     let settings = Settings {
         shading: arguments.shade.into(),
         rung,
+        acceleration: Acceleration::Auto,
         effects: arguments.effects,
         time_limit: arguments.time_limit.map(Duration::from_secs_f64),
         noise: arguments.noise,

@@ -13,7 +13,8 @@ use spherule_kernel::{Launch, Pixel, Rung, Shading};
 use super::{Progress, Settings};
 use crate::error::Result;
 use crate::film;
-use crate::scene::{World, tree};
+use crate::scene::World;
+use crate::scene::tree::{self, Acceleration};
 
 /// Rows in a band: small enough to share the work out evenly, large enough that handing it out
 /// costs nothing.
@@ -29,8 +30,8 @@ pub struct Prepared<'a> {
 impl<'a> Prepared<'a> {
     /// Grows the tree.
     #[must_use]
-    pub fn new(world: &'a World) -> Self {
-        match tree::grow(&world.spheres, &[], (0.0, 0.0)) {
+    pub fn new(world: &'a World, acceleration: Acceleration) -> Self {
+        match tree::grow(&world.spheres, &[], (0.0, 0.0), acceleration) {
             Some(tree) => Self {
                 world: Cow::Owned(tree.sort_world(world)),
                 nodes: tree.nodes,

@@ -1,5 +1,6 @@
 //! The GPU path: the `render` entry point, tile by tile and run by run.
 
+use std::ops::Range;
 use std::time::{Duration, Instant};
 
 use glam::UVec2;
@@ -22,20 +23,96 @@ const ENTRY: &str = "render";
 /// What a ray takes in a tree, in intersections: a first guess, of which [`Pace`] learns more.
 const WORK_IN_TREE: u64 = 100;
 
+/// A world on a GPU, and the kernel for it.
+#[derive(Debug)]
+pub struct Prepared {
+    kernel: Kernel,
+    /// The world, in parts that each fit one binding.
+    parts: Vec<Part>,
+    materials: Buffer<Material>,
+    has_trees: bool,
+    /// What a pixel takes, in intersections.
+    work: u64,
+}
+
+#[derive(Debug)]
+struct Part {
+    spheres: Buffer<Sphere>,
+    material_ids: Buffer<u32>,
+    nodes: Buffer<Node>,
+}
+
+impl Prepared {
+    /// Grows the trees, uploads the world, and compiles the kernel.
+    ///
+    /// # Errors
+    ///
+    /// The device's errors, and [`Error::RungRefused`] if the canary objects to the rung.
+    pub fn new(gpu: &Gpu, world: &World, settings: Settings) -> Result<Self> {
+        Canary::require_on_gpu(gpu, settings.rung)?;
+        let limits = gpu.limits();
+        let binding = limits
+            .max_storage_buffer_binding_size
+            .min(limits.max_buffer_size);
+        let spheres_a_part = (binding / size_of::<Sphere>() as u64).max(1) as usize;
+        let count = world.spheres.len();
+        let starts = (0..count.max(1)).step_by(spheres_a_part);
+        let runs: Vec<_> = starts
+            .map(|first| first..(first + spheres_a_part).min(count))
+            .collect();
+        // All have trees, or none has.
+        let grow = |run: &Range<usize>| {
+            let spheres = &world.spheres[run.clone()];
+            tree::grow(spheres, &[], (0.0, 0.0), settings.acceleration)
+        };
+        let trees: Option<Vec<Tree>> = runs.iter().map(grow).collect();
+        let parts = runs.iter().enumerate().map(|(index, run)| {
+            let spheres = &world.spheres[run.clone()];
+            let ids = &world.material_ids[run.clone()];
+            Ok(match &trees {
+                Some(trees) => Part {
+                    spheres: gpu.upload("spheres", &trees[index].sort(spheres))?,
+                    material_ids: gpu.upload("material ids", &trees[index].sort(ids))?,
+                    nodes: gpu.upload("nodes", &trees[index].nodes)?,
+                },
+                None => Part {
+                    spheres: gpu.upload("spheres", spheres)?,
+                    material_ids: gpu.upload("material ids", ids)?,
+                    nodes: gpu.upload("nodes", &[])?,
+                },
+            })
+        });
+        let module = kernel_module::for_rung(settings.rung)?
+            .specialise(Shading::SPEC_ID, settings.shading.to_u32())?
+            .specialise(Node::SPEC_ID, trees.is_some().into())?;
+        let mut access = [Access::Read; 6];
+        access[0] = Access::Uniform;
+        access[5] = Access::ReadWrite;
+        Ok(Self {
+            kernel: gpu.kernel(&module, ENTRY, &access)?,
+            parts: parts.collect::<Result<_>>()?,
+            materials: gpu.upload("materials", &world.materials)?,
+            has_trees: trees.is_some(),
+            work: match &trees {
+                Some(_) => WORK_IN_TREE,
+                None => count as u64,
+            },
+        })
+    }
+}
+
 /// Renders `launch`, which covers a whole image, on `gpu`.
 ///
 /// # Errors
 ///
-/// The device's errors, [`Error::RungRefused`] if the canary objects to the rung, and
-/// [`Error::Readback`] if a thread wrote no pixel.
+/// The device's errors, and [`Error::Readback`] if a thread wrote no pixel.
 pub fn render(
     gpu: &Gpu,
     launch: &Launch,
-    world: &World,
-    settings: Settings,
+    world: &Prepared,
     progress: Progress<'_>,
 ) -> Result<(Vec<Pixel>, Timings)> {
-    render_paced(gpu, launch, world, settings, progress, Pace::default())
+    render_paced(gpu, launch, world, progress, Pace::default())
 }
 
 /// [`render`] with the first launches sized by `pace`.
@@ -46,29 +123,11 @@ pub fn render(
 pub fn render_paced(
     gpu: &Gpu,
     launch: &Launch,
-    world: &World,
-    settings: Settings,
+    world: &Prepared,
     progress: Progress<'_>,
     mut pace: Pace,
 ) -> Result<(Vec<Pixel>, Timings)> {
     let started = Instant::now();
-    Canary::require_on_gpu(gpu, settings.rung)?;
-    let world = DeviceWorld::upload(gpu, world)?;
-    let module = kernel_module::for_rung(settings.rung)?
-        .specialise(Shading::SPEC_ID, settings.shading.to_u32())?
-        .specialise(Node::SPEC_ID, world.has_trees.into())?;
-    let kernel = gpu.kernel(
-        &module,
-        ENTRY,
-        &[
-            Access::Uniform,
-            Access::Read,
-            Access::Read,
-            Access::Read,
-            Access::Read,
-            Access::ReadWrite,
-        ],
-    )?;
     let size = launch.image_size;
     let tiles = Tiles::new::<Pixel>(gpu, size);
     let target = Target {
@@ -89,7 +148,7 @@ pub fn render_paced(
             tile_size: tile,
             ..*launch
         };
-        timings.trace += render_tile(gpu, &kernel, &launch, &world, &target, &mut pace)?;
+        timings.trace += render_tile(gpu, &launch, world, &target, &mut pace)?;
 
         let reading = Instant::now();
         let pixels = gpu.read_first(&target.pixels, (tile.x * tile.y) as usize)?;
@@ -113,9 +172,8 @@ struct Target {
 /// Renders one tile against every part of the world.
 fn render_tile(
     gpu: &Gpu,
-    kernel: &Kernel,
     launch: &Launch,
-    world: &DeviceWorld,
+    world: &Prepared,
     target: &Target,
     pace: &mut Pace,
 ) -> Result<Duration> {
@@ -135,7 +193,7 @@ fn render_tile(
             };
             gpu.update(&target.launch, &launch)?;
             let time = gpu.launch(
-                kernel,
+                &world.kernel,
                 &[
                     target.launch.binding(),
                     part.spheres.binding(),
@@ -144,7 +202,7 @@ fn render_tile(
                     part.nodes.binding(),
                     target.pixels.binding(),
                 ],
-                kernel.workgroups_for([tile.x, tile.y, 1]),
+                world.kernel.workgroups_for([tile.x, tile.y, 1]),
             )?;
             let work = if world.has_trees {
                 world.work
@@ -178,66 +236,4 @@ fn check_written(gpu: &Gpu, pixels: &[Pixel]) -> Result<()> {
             pixels.len()
         ),
     })
-}
-
-/// The world on the device, in parts that each fit one binding.
-struct DeviceWorld {
-    parts: Vec<Part>,
-    materials: Buffer<Material>,
-    has_trees: bool,
-    /// What a pixel takes, in intersections.
-    work: u64,
-}
-
-struct Part {
-    spheres: Buffer<Sphere>,
-    material_ids: Buffer<u32>,
-    nodes: Buffer<Node>,
-}
-
-impl DeviceWorld {
-    fn upload(gpu: &Gpu, world: &World) -> Result<Self> {
-        let limits = gpu.limits();
-        let binding = limits
-            .max_storage_buffer_binding_size
-            .min(limits.max_buffer_size);
-        let spheres_a_part = (binding / size_of::<Sphere>() as u64).max(1) as usize;
-        let count = world.spheres.len();
-        let starts = (0..count.max(1)).step_by(spheres_a_part);
-        let runs: Vec<_> = starts
-            .map(|first| first..(first + spheres_a_part).min(count))
-            .collect();
-        // All have trees, or none has.
-        let trees: Option<Vec<Tree>> = runs
-            .iter()
-            .map(|run| tree::grow(&world.spheres[run.clone()], &[], (0.0, 0.0)))
-            .collect();
-        let parts = runs.iter().enumerate().map(|(index, run)| {
-            let spheres = &world.spheres[run.clone()];
-            let ids = &world.material_ids[run.clone()];
-            let part = match &trees {
-                Some(trees) => Part {
-                    spheres: gpu.upload("spheres", &trees[index].sort(spheres))?,
-                    material_ids: gpu.upload("material ids", &trees[index].sort(ids))?,
-                    nodes: gpu.upload("nodes", &trees[index].nodes)?,
-                },
-                None => Part {
-                    spheres: gpu.upload("spheres", spheres)?,
-                    material_ids: gpu.upload("material ids", ids)?,
-                    nodes: gpu.upload("nodes", &[])?,
-                },
-            };
-            Ok(part)
-        });
-        let work = match &trees {
-            Some(_) => WORK_IN_TREE,
-            None => count as u64,
-        };
-        Ok(Self {
-            parts: parts.collect::<Result<_>>()?,
-            materials: gpu.upload("materials", &world.materials)?,
-            has_trees: trees.is_some(),
-            work,
-        })
-    }
 }

@@ -24,6 +24,7 @@ use crate::device::Device;
 use crate::error::{Error, Result, SceneError};
 use crate::film::Image;
 use crate::scene::Scene;
+use crate::scene::tree::Acceleration;
 use paths::{EffectChoice, Reached};
 
 /// What is fixed before the kernel is compiled, on the GPU and on the CPU.
@@ -33,6 +34,8 @@ pub struct Settings {
     pub shading: Shading,
     /// How rays are intersected with spheres.
     pub rung: Rung,
+    /// Whether spheres stand in a tree.
+    pub acceleration: Acceleration,
     /// Which effects the pipeline holds; only [`Shading::Lit`] shows any.
     pub effects: EffectChoice,
     /// Stops taking samples after this time of tracing.
@@ -45,6 +48,16 @@ impl From<Shading> for Settings {
     fn from(shading: Shading) -> Self {
         Self {
             shading,
+            ..Self::default()
+        }
+    }
+}
+
+impl From<(Shading, Rung)> for Settings {
+    fn from((shading, rung): (Shading, Rung)) -> Self {
+        Self {
+            shading,
+            rung,
             ..Self::default()
         }
     }
@@ -117,7 +130,7 @@ pub fn render(
     match device {
         Device::Cpu => {
             let started = Instant::now();
-            let world = cpu::Prepared::new(&scene.world);
+            let world = cpu::Prepared::new(&scene.world, settings.acceleration);
             let setup = started.elapsed();
             let pixels = cpu::render(&launch, &world, settings, progress)?;
             let timings = Timings {
@@ -132,7 +145,14 @@ pub fn render(
             })
         }
         Device::Gpu(gpu) => {
-            let (pixels, timings) = gpu::render(gpu, &launch, &scene.world, settings, progress)?;
+            let started = Instant::now();
+            let world = gpu::Prepared::new(gpu, &scene.world, settings)?;
+            let setup = started.elapsed();
+            let (pixels, timings) = gpu::render(gpu, &launch, &world, progress)?;
+            let timings = Timings {
+                setup: setup + timings.setup,
+                ..timings
+            };
             Ok(Rendered {
                 image: image(pixels),
                 timings,

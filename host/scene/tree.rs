@@ -30,6 +30,29 @@ const HALVING_DEPTH: usize = Node::MAX_DEPTH - 12;
 /// --scene` on worlds of growing size.
 pub const MIN_SPHERES: usize = 12;
 
+/// Whether a tree is grown.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Acceleration {
+    /// Where there are enough spheres for one to pay.
+    #[default]
+    Auto,
+    /// Always.
+    Tree,
+    /// Never: each ray is tested against every sphere.
+    BruteForce,
+}
+
+impl Acceleration {
+    /// The fewest spheres that get a tree.
+    fn min_spheres(self) -> usize {
+        match self {
+            Self::Auto => MIN_SPHERES,
+            Self::Tree => 1,
+            Self::BruteForce => usize::MAX,
+        }
+    }
+}
+
 /// A tree over spheres.
 #[derive(Clone, Debug)]
 pub struct Tree {
@@ -163,9 +186,14 @@ impl Item {
 /// at rest. Without one where it would not pay, where a number is not finite or beyond
 /// [`Node::MAX_COORDINATE`], or where there are more spheres than nodes can name.
 #[must_use]
-pub fn grow(spheres: &[Sphere], velocities: &[Vec3], shutter: (f32, f32)) -> Option<Tree> {
+pub fn grow(
+    spheres: &[Sphere],
+    velocities: &[Vec3],
+    shutter: (f32, f32),
+    acceleration: Acceleration,
+) -> Option<Tree> {
     let count = spheres.len();
-    if !(MIN_SPHERES..=Node::MAX_SPHERES as usize).contains(&count) {
+    if !(acceleration.min_spheres()..=Node::MAX_SPHERES as usize).contains(&count) {
         return None;
     }
     let still = Vec3::ZERO;
@@ -769,7 +797,7 @@ mod tests {
 
     impl Grown {
         fn over(world: &World) -> Self {
-            let tree = grow(&world.spheres, &[], (0.0, 0.0)).expect("a tree");
+            let tree = grow(&world.spheres, &[], (0.0, 0.0), Acceleration::Auto).expect("a tree");
             Self {
                 world: tree.sort_world(world),
                 nodes: tree.nodes,
@@ -945,6 +973,6 @@ mod tests {
     fn a_world_that_is_not_finite_gets_no_tree() {
         let (_, mut world) = worlds().remove(0);
         world.add(Sphere::new(Vec3::NAN, 1.0), 0);
-        assert!(grow(&world.spheres, &[], (0.0, 0.0)).is_none());
+        assert!(grow(&world.spheres, &[], (0.0, 0.0), Acceleration::Tree).is_none());
     }
 }

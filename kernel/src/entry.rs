@@ -105,12 +105,13 @@ pub fn trace_paths(
 #[spirv(compute(threads(64), entry_point_name = "trace_rays"))]
 pub fn trace_rays(
     #[spirv(global_invocation_id)] id: UVec3,
+    #[spirv(num_workgroups)] groups: UVec3,
     #[spirv(spec_constant(id = 1, default = 1))] rung: u32,
     #[spirv(storage_buffer, descriptor_set = 0, binding = 0)] rays: &[Ray],
     #[spirv(storage_buffer, descriptor_set = 0, binding = 1)] spheres: &[Sphere],
     #[spirv(storage_buffer, descriptor_set = 0, binding = 2)] hits: &mut [Hit],
 ) {
-    let index = id.x as usize;
+    let index = (id.y * groups.x * 64 + id.x) as usize;
     if index < rays.len() && index < hits.len() {
         hits[index] = nearest_hit_in(rung, &rays[index], spheres, 0, u32::MAX);
     }
@@ -120,13 +121,14 @@ pub fn trace_rays(
 #[spirv(compute(threads(64), entry_point_name = "trace_rays_in_tree"))]
 pub fn trace_rays_in_tree(
     #[spirv(global_invocation_id)] id: UVec3,
+    #[spirv(num_workgroups)] groups: UVec3,
     #[spirv(spec_constant(id = 1, default = 1))] rung: u32,
     #[spirv(storage_buffer, descriptor_set = 0, binding = 0)] rays: &[Ray],
     #[spirv(storage_buffer, descriptor_set = 0, binding = 1)] spheres: &[Sphere],
     #[spirv(storage_buffer, descriptor_set = 0, binding = 2)] nodes: &[Node],
     #[spirv(storage_buffer, descriptor_set = 0, binding = 3)] hits: &mut [Hit],
 ) {
-    let index = id.x as usize;
+    let index = (id.y * groups.x * 64 + id.x) as usize;
     if index < rays.len() && index < hits.len() {
         hits[index] = nearest_hit_in_tree(rung, &rays[index], nodes, spheres);
     }
@@ -136,12 +138,13 @@ pub fn trace_rays_in_tree(
 #[spirv(compute(threads(64), entry_point_name = "occlude_rays"))]
 pub fn occlude_rays(
     #[spirv(global_invocation_id)] id: UVec3,
+    #[spirv(num_workgroups)] groups: UVec3,
     #[spirv(spec_constant(id = 1, default = 1))] rung: u32,
     #[spirv(storage_buffer, descriptor_set = 0, binding = 0)] rays: &[Ray],
     #[spirv(storage_buffer, descriptor_set = 0, binding = 1)] spheres: &[Sphere],
     #[spirv(storage_buffer, descriptor_set = 0, binding = 2)] occluded: &mut [u32],
 ) {
-    let index = id.x as usize;
+    let index = (id.y * groups.x * 64 + id.x) as usize;
     if index < rays.len() && index < occluded.len() {
         occluded[index] = u32::from(is_occluded(rung, &rays[index], spheres));
     }
@@ -151,13 +154,14 @@ pub fn occlude_rays(
 #[spirv(compute(threads(64), entry_point_name = "occlude_rays_in_tree"))]
 pub fn occlude_rays_in_tree(
     #[spirv(global_invocation_id)] id: UVec3,
+    #[spirv(num_workgroups)] groups: UVec3,
     #[spirv(spec_constant(id = 1, default = 1))] rung: u32,
     #[spirv(storage_buffer, descriptor_set = 0, binding = 0)] rays: &[Ray],
     #[spirv(storage_buffer, descriptor_set = 0, binding = 1)] spheres: &[Sphere],
     #[spirv(storage_buffer, descriptor_set = 0, binding = 2)] nodes: &[Node],
     #[spirv(storage_buffer, descriptor_set = 0, binding = 3)] occluded: &mut [u32],
 ) {
-    let index = id.x as usize;
+    let index = (id.y * groups.x * 64 + id.x) as usize;
     if index < rays.len() && index < occluded.len() {
         occluded[index] = u32::from(is_occluded_in_tree(rung, &rays[index], nodes, spheres));
     }

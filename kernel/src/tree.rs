@@ -301,7 +301,7 @@ pub fn nearest_hit_in_tree<S: Spheres + ?Sized>(
     nodes: &[Node],
     spheres: &S,
 ) -> Hit {
-    walk::<false, S>(rung, ray, nodes, spheres)
+    walk::<false, S>(rung, ray, nodes, spheres, &mut Work::default())
 }
 
 /// Whether `ray` hits any sphere of a tree.
@@ -313,7 +313,34 @@ pub fn is_occluded_in_tree<S: Spheres + ?Sized>(
     nodes: &[Node],
     spheres: &S,
 ) -> bool {
-    walk::<true, S>(rung, ray, nodes, spheres).is_some()
+    walk::<true, S>(rung, ray, nodes, spheres, &mut Work::default()).is_some()
+}
+
+/// What a ray took.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Work {
+    /// The nodes whose boxes it was tested against.
+    pub nodes: u32,
+    /// The spheres that it was tested against.
+    pub spheres: u32,
+}
+
+/// What `ray` takes in a tree; with `any`, up to the first hit that is found.
+#[must_use]
+pub fn work_in_tree<S: Spheres + ?Sized>(
+    rung: u32,
+    any: bool,
+    ray: &Ray,
+    nodes: &[Node],
+    spheres: &S,
+) -> Work {
+    let mut work = Work::default();
+    if any {
+        let _ = walk::<true, S>(rung, ray, nodes, spheres, &mut work);
+    } else {
+        let _ = walk::<false, S>(rung, ray, nodes, spheres, &mut work);
+    }
+    work
 }
 
 /// The nearest hit, or any.
@@ -323,6 +350,7 @@ fn walk<const ANY: bool, S: Spheres + ?Sized>(
     ray: &Ray,
     nodes: &[Node],
     spheres: &S,
+    work: &mut Work,
 ) -> Hit {
     let mut hit = Hit::NONE;
     if nodes.len() <= Node::ROOT as usize {
@@ -354,6 +382,7 @@ fn walk<const ANY: bool, S: Spheres + ?Sized>(
         // SAFETY: `at` is below the slice's length, which is not zero.
         let node = unsafe { *nodes.index_unchecked(at as usize) };
         let met = slabs.meets(&node, end);
+        work.nodes += 1;
 
         let mut left = met & 0x00ff_ffff;
         while left != 0 {
@@ -363,6 +392,7 @@ fn walk<const ANY: bool, S: Spheres + ?Sized>(
                 // SAFETY: `index` is below the number of spheres.
                 let sphere = unsafe { spheres.sphere(index) };
                 let t = intersect(rung, sphere, &ray);
+                work.spheres += 1;
                 if t < ray.t_max {
                     if ANY {
                         return Hit { t, sphere: index };

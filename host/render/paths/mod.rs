@@ -65,7 +65,7 @@ pub fn render(
     device: &Device,
     progress: Progress<'_>,
 ) -> Result<Rendered> {
-    let prepared = Prepared::new(scene, settings.effects)?;
+    let prepared = Prepared::new(scene, settings.effects, settings.acceleration)?;
     let (accumulators, timings, reached) = match device {
         Device::Cpu => cpu::render(&prepared, settings, progress)?,
         Device::Gpu(gpu) => gpu::render(gpu, &prepared, settings, progress)?,

@@ -14,7 +14,7 @@ use super::EffectChoice;
 use crate::error::Result;
 use crate::render::whole_image;
 use crate::scene::surroundings::EnvironmentImage;
-use crate::scene::tree;
+use crate::scene::tree::{self, Acceleration};
 use crate::scene::{Scene, World};
 
 /// What the kernel is told of a scene, besides its world.
@@ -46,7 +46,7 @@ impl Prepared {
     /// # Errors
     ///
     /// As [`whole_image`].
-    pub fn new(scene: &Scene, choice: EffectChoice) -> Result<Self> {
+    pub fn new(scene: &Scene, choice: EffectChoice, acceleration: Acceleration) -> Result<Self> {
         let whole = whole_image(scene)?;
         let called = scene.effects();
         let shown = choice.shown(called);
@@ -58,11 +58,15 @@ impl Prepared {
         } else {
             (0.0, 0.0)
         };
-        let (world, nodes) =
-            match tree::grow(&scene.world.spheres, &scene.world.velocities, shutter) {
-                Some(tree) => (tree.sort_world(&scene.world), tree.nodes),
-                None => (scene.world.clone(), Vec::new()),
-            };
+        let (world, nodes) = match tree::grow(
+            &scene.world.spheres,
+            &scene.world.velocities,
+            shutter,
+            acceleration,
+        ) {
+            Some(tree) => (tree.sort_world(&scene.world), tree.nodes),
+            None => (scene.world.clone(), Vec::new()),
+        };
         let (lights, mut sky, sphere_light_probability) = lights(scene, &world);
         if let Some(image) = scene.sky.as_ref().and_then(|sky| sky.image.as_ref()) {
             sky.environment_size = glam::UVec2::new(image.width, image.height);

@@ -1,0 +1,295 @@
+//! The times of rays, and of growing the tree.
+
+use std::time::{Duration, Instant};
+
+use serde::Serialize;
+use spherule_kernel::{Hit, Rung, Shading};
+
+use super::rays::{Kind, RaySets};
+use crate::device::Device;
+use crate::error::Result;
+use crate::render::{self, QUIET, Settings, whole_image};
+use crate::scene::Scene;
+use crate::scene::tree::{self, Acceleration};
+use crate::trace::{CpuTracer, GpuTracer};
+
+/// What was measured of one world.
+#[derive(Clone, Debug, Serialize)]
+pub struct Measured {
+    /// The world's name.
+    pub scene: String,
+    /// How many spheres it has.
+    pub spheres: usize,
+    /// Whether they stand in a tree.
+    pub has_tree: bool,
+    /// Width and height of the image.
+    pub size: (u32, u32),
+    /// The rung.
+    pub precision: &'static str,
+    /// Growing the tree.
+    pub build: Build,
+    /// What tracing takes on the device, spheres, nodes and material ids, in bytes a sphere.
+    pub bytes_per_sphere: f64,
+    /// The rays, kind by kind.
+    pub rays: Rays,
+}
+
+/// The kinds of rays.
+#[derive(Clone, Debug, Serialize)]
+pub struct Rays {
+    /// From the eye.
+    pub primary: Speed,
+    /// To a light.
+    pub shadow: Speed,
+    /// Within a short reach.
+    pub ambient: Speed,
+    /// In random order.
+    pub incoherent: Speed,
+}
+
+/// How long the tree takes.
+#[derive(Clone, Debug, Serialize)]
+pub struct Build {
+    /// The median, in seconds.
+    pub seconds: f64,
+    /// Half of the range between the fastest and the slowest.
+    pub spread: f64,
+    /// Spheres over seconds.
+    pub spheres_per_s: f64,
+    /// Threads that took part.
+    pub threads: usize,
+}
+
+/// How fast rays of one kind are.
+#[derive(Clone, Debug, Serialize)]
+pub struct Speed {
+    /// How many there were.
+    pub rays: usize,
+    /// How many hit something.
+    pub hits: usize,
+    /// The median over the rounds.
+    pub seconds: f64,
+    /// Half of the range between the fastest and the slowest, over the median.
+    pub spread: f64,
+    /// Millions of rays a second.
+    pub mrays_per_s: f64,
+    /// Nodes whose boxes a ray was tested against, on average.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub nodes_per_ray: Option<f64>,
+    /// Spheres that a ray was tested against, on average.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub spheres_per_ray: Option<f64>,
+}
+
+impl Speed {
+    fn of(rays: usize, hits: usize, mut times: Vec<f64>) -> Self {
+        let (seconds, spread) = median(&mut times);
+        Self {
+            rays,
+            hits,
+            seconds,
+            spread: spread / seconds.max(f64::MIN_POSITIVE),
+            mrays_per_s: rays as f64 / seconds.max(1e-12) * 1e-6,
+            nodes_per_ray: None,
+            spheres_per_ray: None,
+        }
+    }
+}
+
+/// The median, and half of the range.
+fn median(times: &mut [f64]) -> (f64, f64) {
+    times.sort_by(f64::total_cmp);
+    match (times.first(), times.last()) {
+        (Some(first), Some(last)) => (times[times.len() / 2], 0.5 * (last - first)),
+        _ => (0.0, 0.0),
+    }
+}
+
+/// How to measure.
+#[derive(Clone, Copy, Debug)]
+pub struct Plan {
+    /// The rung.
+    pub rung: Rung,
+    /// Whether to grow a tree.
+    pub acceleration: Acceleration,
+    /// How often each kind is timed; they take turns.
+    pub rounds: usize,
+}
+
+/// Measures `scene` on `device`.
+///
+/// # Errors
+///
+/// As [`render::render`].
+pub fn measure(
+    device: &Device,
+    name: &str,
+    scene: &Scene,
+    reach: f32,
+    plan: Plan,
+) -> Result<Measured> {
+    let spheres = &scene.world.spheres;
+    let mut builds = Vec::new();
+    for _ in 0..plan.rounds.min(3) {
+        let started = Instant::now();
+        let tree = tree::grow(spheres, &[], (0.0, 0.0), plan.acceleration);
+        if tree.is_some() {
+            builds.push(started.elapsed().as_secs_f64());
+        }
+    }
+    let (seconds, spread) = median(&mut builds);
+    let tracer = CpuTracer::new(spheres, plan.acceleration);
+    let sets = RaySets::of(scene, &tracer, reach)?;
+    let ids = size_of_val(&scene.world.material_ids[..]);
+    let bytes = (tracer.bytes() + ids) as f64 / spheres.len().max(1) as f64;
+    let work = Kind::ALL.map(|kind| {
+        let rays = sets.kind(kind);
+        let work = tracer.work(plan.rung, kind.is_any(), rays);
+        let a_ray = |sum: u64| sum as f64 / rays.len().max(1) as f64;
+        work.map(|(nodes, spheres)| (a_ray(nodes), a_ray(spheres)))
+    });
+    let mut speeds = match device {
+        Device::Cpu => on_cpu(&tracer, scene, &sets, plan)?,
+        Device::Gpu(gpu) => {
+            drop(tracer);
+            let tracer = GpuTracer::new(gpu, spheres, plan.acceleration)?;
+            on_gpu(gpu, &tracer, scene, &sets, plan)?
+        }
+    };
+    for (speed, work) in speeds.iter_mut().zip(work) {
+        speed.nodes_per_ray = work.map(|(nodes, _)| nodes);
+        speed.spheres_per_ray = work.map(|(_, spheres)| spheres);
+    }
+    let [primary, shadow, ambient, incoherent] = speeds;
+    Ok(Measured {
+        scene: name.into(),
+        spheres: spheres.len(),
+        has_tree: !builds.is_empty(),
+        size: (scene.width, scene.height),
+        precision: plan.rung.name(),
+        build: Build {
+            seconds,
+            spread,
+            spheres_per_s: if seconds > 0.0 {
+                spheres.len() as f64 / seconds
+            } else {
+                0.0
+            },
+            threads: rayon::current_num_threads(),
+        },
+        bytes_per_sphere: bytes,
+        rays: Rays {
+            primary,
+            shadow,
+            ambient,
+            incoherent,
+        },
+    })
+}
+
+/// What primary rays are timed by: an image of one colour.
+fn settings(plan: Plan) -> Settings {
+    Settings {
+        acceleration: plan.acceleration,
+        ..Settings::from((Shading::Flat, plan.rung))
+    }
+}
+
+fn on_cpu(
+    tracer: &CpuTracer,
+    scene: &Scene,
+    sets: &RaySets,
+    plan: Plan,
+) -> Result<[Speed; Kind::ALL.len()]> {
+    let launch = whole_image(scene)?;
+    let world = render::cpu::Prepared::new(&scene.world, plan.acceleration);
+    let mut times = Kind::ALL.map(|_| Vec::new());
+    let mut found = [0; Kind::ALL.len()];
+    let (mut hits, mut occluded) = (Vec::new(), Vec::new());
+    for round in 0..=plan.rounds {
+        for kind in Kind::ALL {
+            let rays = sets.kind(kind);
+            let started = Instant::now();
+            let took: Duration;
+            let index = kind as usize;
+            if kind == Kind::Primary {
+                let pixels = render::cpu::render(&launch, &world, settings(plan), QUIET)?;
+                took = started.elapsed();
+                found[index] = pixels.iter().filter(|pixel| pixel.is_hit()).count();
+            } else if kind.is_any() {
+                tracer.occluded(plan.rung, rays, &mut occluded);
+                took = started.elapsed();
+                found[index] = occluded.iter().filter(|hit| **hit != 0).count();
+            } else {
+                tracer.nearest(plan.rung, rays, &mut hits);
+                took = started.elapsed();
+                found[index] = hits.iter().filter(|hit: &&Hit| hit.is_some()).count();
+            }
+            // The first round warms up.
+            if round > 0 {
+                times[index].push(took.as_secs_f64());
+            }
+        }
+    }
+    Ok(speeds(sets, found, times))
+}
+
+fn on_gpu(
+    gpu: &crate::device::Gpu,
+    tracer: &GpuTracer<'_>,
+    scene: &Scene,
+    sets: &RaySets,
+    plan: Plan,
+) -> Result<[Speed; Kind::ALL.len()]> {
+    let launch = whole_image(scene)?;
+    let world = render::gpu::Prepared::new(gpu, &scene.world, settings(plan))?;
+    let [shadow, ambient, incoherent] = [&sets.shadow, &sets.ambient, &sets.incoherent];
+    let batches = [
+        tracer.upload(shadow)?,
+        tracer.upload(ambient)?,
+        tracer.upload(incoherent)?,
+    ];
+    let mut times = Kind::ALL.map(|_| Vec::new());
+    let mut found = [0; Kind::ALL.len()];
+    for round in 0..=plan.rounds {
+        for kind in Kind::ALL {
+            let index = kind as usize;
+            if sets.kind(kind).is_empty() {
+                continue;
+            }
+            let took = if kind == Kind::Primary {
+                let (pixels, timings) = render::gpu::render(gpu, &launch, &world, QUIET)?;
+                found[index] = pixels.iter().filter(|pixel| pixel.is_hit()).count();
+                timings.trace
+            } else if kind.is_any() {
+                tracer.occluded(plan.rung, &batches[index - 1])?
+            } else {
+                tracer.nearest(plan.rung, &batches[index - 1])?
+            };
+            // The first round warms up.
+            if round > 0 {
+                times[index].push(took.as_secs_f64());
+            }
+        }
+    }
+    for kind in [Kind::Shadow, Kind::Ambient] {
+        let index = kind as usize;
+        let occluded = tracer.occlusions(&batches[index - 1])?;
+        found[index] = occluded.iter().filter(|hit| **hit != 0).count();
+    }
+    let hits = tracer.hits(&batches[Kind::Incoherent as usize - 1])?;
+    found[Kind::Incoherent as usize] = hits.iter().filter(|hit| hit.is_some()).count();
+    Ok(speeds(sets, found, times))
+}
+
+fn speeds(
+    sets: &RaySets,
+    found: [usize; Kind::ALL.len()],
+    times: [Vec<f64>; Kind::ALL.len()],
+) -> [Speed; Kind::ALL.len()] {
+    let mut times = times.into_iter();
+    Kind::ALL.map(|kind| {
+        let times = times.next().unwrap_or_default();
+        Speed::of(sets.kind(kind).len(), found[kind as usize], times)
+    })
+}

@@ -1,0 +1,13 @@
+//! How fast rays of every kind are, by worlds from two spheres to ten million.
+//!
+//! | module | holds |
+//! | --- | --- |
+//! | [`scenes`] | the worlds |
+//! | [`rays`] | the rays: primary, shadow, ambient, incoherent |
+//! | [`measure`] | their times |
+//! | [`export`] | worlds, rays and hits as files, for other programs |
+
+pub mod export;
+pub mod measure;
+pub mod rays;
+pub mod scenes;

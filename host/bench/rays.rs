@@ -1,0 +1,159 @@
+//! The rays of a scene, kind by kind: those that a renderer of it would trace.
+
+use glam::{UVec2, Vec3};
+use rayon::prelude::*;
+use serde::Serialize;
+use spherule_kernel::{Hit, Ray, Rung, Sphere, Surface};
+
+use crate::accuracy::random::Random;
+use crate::error::Result;
+use crate::render::whole_image;
+use crate::scene::Scene;
+use crate::trace::CpuTracer;
+
+/// What rays are for, which decides what is asked of them and how alike neighbours are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Kind {
+    /// From the eye through each pixel's middle: the nearest hit.
+    Primary,
+    /// From each hit to one light: whether there is any.
+    Shadow,
+    /// From each hit, four within a short reach, more of them along the normal: whether there is any.
+    Ambient,
+    /// From each hit on as diffuse light goes, in random order: the nearest.
+    Incoherent,
+}
+
+impl Kind {
+    /// Every kind.
+    pub const ALL: [Self; 4] = [Self::Primary, Self::Shadow, Self::Ambient, Self::Incoherent];
+
+    /// The name, as tables and files have it.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Primary => "primary",
+            Self::Shadow => "shadow",
+            Self::Ambient => "ambient",
+            Self::Incoherent => "incoherent",
+        }
+    }
+
+    /// Whether any hit will do.
+    #[must_use]
+    pub const fn is_any(self) -> bool {
+        matches!(self, Self::Shadow | Self::Ambient)
+    }
+}
+
+/// Pixels of a side of the squares in which rays stand.
+const TILE: u32 = 8;
+/// Ambient rays a hit.
+const AMBIENT: usize = 4;
+
+/// The rays of a scene.
+#[derive(Clone, Debug)]
+pub struct RaySets {
+    /// Camera rays, row by row.
+    pub primary: Vec<Ray>,
+    /// One a hit, square by square of the image.
+    pub shadow: Vec<Ray>,
+    /// Four a hit, square by square of the image.
+    pub ambient: Vec<Ray>,
+    /// One a hit, shuffled.
+    pub incoherent: Vec<Ray>,
+}
+
+impl RaySets {
+    /// Makes them, by what the camera rays hit; `reach` is the length of ambient rays in scene units.
+    ///
+    /// # Errors
+    ///
+    /// As [`whole_image`].
+    pub fn of(scene: &Scene, tracer: &CpuTracer, reach: f32) -> Result<Self> {
+        let launch = whole_image(scene)?;
+        let size = launch.image_size;
+        let primary: Vec<Ray> = (0..size.x * size.y)
+            .into_par_iter()
+            .map(|index| {
+                let pixel = UVec2::new(index % size.x, index / size.x);
+                launch.camera.pixel_ray(pixel, size)
+            })
+            .collect();
+        let mut hits = Vec::new();
+        tracer.nearest(Rung::Robust, &primary, &mut hits);
+        let surfaces: Vec<Surface> = squares(size)
+            .map(|index| (&primary[index], hits[index]))
+            .filter(|(_, hit)| hit.is_some())
+            .map(|(ray, hit): (&Ray, Hit)| {
+                let sphere: Sphere = scene.world.spheres[hit.sphere as usize];
+                let mut surface = Surface::at(ray, hit.t, sphere);
+                if surface.normal.dot(ray.direction) > 0.0 {
+                    surface.normal = -surface.normal;
+                }
+                surface
+            })
+            .collect();
+        // Above, to the left, and on the eye's side of what is seen.
+        let view = scene.view_or_framed();
+        let light = view.eye + (view.eye.distance(view.target)) * Vec3::new(-0.5, 0.8, 0.0);
+        let shadow = surfaces.par_iter().map(|surface| {
+            let to_light = light - surface.point;
+            let ray = surface.leave(to_light);
+            Ray { t_max: 1.0, ..ray }
+        });
+        let around = |index: usize, salt: u64, surface: &Surface| {
+            let mut random = Random::new(salt + index as u64);
+            (surface.normal + random.unit_vec3()).normalize_or(surface.normal)
+        };
+        let indexed = || surfaces.par_iter().enumerate();
+        let ambient = indexed().flat_map_iter(|(index, surface)| {
+            (0..AMBIENT).map(move |sample| {
+                let direction = around(AMBIENT * index + sample, 1 << 40, surface);
+                let ray = surface.leave(direction);
+                Ray {
+                    t_max: reach,
+                    ..ray
+                }
+            })
+        });
+        let mut incoherent: Vec<Ray> = indexed()
+            .map(|(index, surface)| surface.leave(around(index, 1 << 41, surface)))
+            .collect();
+        let mut random = Random::new(3);
+        for last in (1..incoherent.len()).rev() {
+            let other = (u64::from(random.next_u32()) * (last as u64 + 1)) >> 32;
+            incoherent.swap(last, other as usize);
+        }
+        Ok(Self {
+            shadow: shadow.collect(),
+            ambient: ambient.collect(),
+            incoherent,
+            primary,
+        })
+    }
+
+    /// Those of one kind.
+    #[must_use]
+    pub fn kind(&self, kind: Kind) -> &[Ray] {
+        match kind {
+            Kind::Primary => &self.primary,
+            Kind::Shadow => &self.shadow,
+            Kind::Ambient => &self.ambient,
+            Kind::Incoherent => &self.incoherent,
+        }
+    }
+}
+
+/// The indices of pixels, square by square, row by row in each.
+fn squares(size: UVec2) -> impl Iterator<Item = usize> {
+    let rows = (0..size.y).step_by(TILE as usize);
+    rows.flat_map(move |y| {
+        (0..size.x).step_by(TILE as usize).flat_map(move |x| {
+            (y..(y + TILE).min(size.y)).flat_map(move |row| {
+                (x..(x + TILE).min(size.x)).map(move |column| (row * size.x + column) as usize)
+            })
+        })
+    })
+}

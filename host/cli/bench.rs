@@ -1,0 +1,121 @@
+//! `spherule bench`: how fast rays of every kind are here.
+
+use std::process::ExitCode;
+
+use serde::Serialize;
+
+use super::args::BenchArguments;
+use super::{note, print};
+use crate::bench::export::export;
+use crate::bench::measure::{Measured, Plan, Speed, measure};
+use crate::bench::rays::RaySets;
+use crate::bench::scenes::{self, BenchScene};
+use crate::device::Device;
+use crate::error::{Error, Result};
+use crate::trace::CpuTracer;
+
+/// What `--json` writes.
+#[derive(Serialize)]
+struct Report<'a> {
+    device: String,
+    scenes: &'a [Measured],
+}
+
+pub(super) fn run(arguments: &BenchArguments) -> Result<ExitCode> {
+    let size = arguments.size;
+    let plan = Plan {
+        rung: arguments.precision.into(),
+        acceleration: arguments.acceleration.into(),
+        rounds: arguments.rounds as usize,
+    };
+    if let Some(folder) = &arguments.export {
+        for name in &arguments.scene {
+            let (scene, reach) = scenes::load(name, size.width, size.height)?;
+            let tracer = CpuTracer::new(&scene.world.spheres, plan.acceleration);
+            let sets = RaySets::of(&scene, &tracer, reach)?;
+            export(folder, name, &scene, &sets, &tracer, plan.rung)?;
+            note(&format!("wrote {name} to {}", folder.display()));
+        }
+        return Ok(ExitCode::SUCCESS);
+    }
+
+    let (device, why) = Device::open(&arguments.device)?;
+    note(&format!("{} ({why})", device.name()));
+    let names = if arguments.scene.is_empty() {
+        let all = BenchScene::ALL.map(BenchScene::name);
+        // Its making alone takes longer than all of the others.
+        all.into_iter().filter(|name| name != "R10M").collect()
+    } else {
+        arguments.scene.clone()
+    };
+    print(&head(size.width, size.height, plan))?;
+    let mut all = Vec::new();
+    for name in &names {
+        let (scene, reach) = scenes::load(name, size.width, size.height)?;
+        let measured = measure(&device, name, &scene, reach, plan)?;
+        print(&row(&measured))?;
+        all.push(measured);
+    }
+    if let Some(path) = &arguments.json {
+        let report = Report {
+            device: device.name(),
+            scenes: &all,
+        };
+        let text = serde_json::to_string_pretty(&report).unwrap_or_default() + "\n";
+        if path.as_os_str() == "-" {
+            print(&text)?;
+        } else {
+            std::fs::write(path, text).map_err(|error| Error::Image {
+                path: path.clone(),
+                reason: format!("cannot be written: {error}"),
+                help: "check that the directory exists and may be written".into(),
+            })?;
+        }
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn head(width: u32, height: u32, plan: Plan) -> String {
+    format!(
+        "{width} x {height}, precision {}, medians of {} rounds; Mrays/s of each kind, half of the range in per cent\n\
+         {:<12} {:>9} {:>5}  {:>15} {:>15} {:>15} {:>15}  {:>13} {:>8}\n",
+        plan.rung.name(),
+        plan.rounds,
+        "scene",
+        "spheres",
+        "tree",
+        "primary",
+        "shadow",
+        "ambient",
+        "incoherent",
+        "build, M/s",
+        "bytes"
+    )
+}
+
+fn row(measured: &Measured) -> String {
+    let rays = |speed: &Speed| {
+        if speed.rays == 0 {
+            "-".to_owned()
+        } else {
+            format!("{:.1} ±{:>2.0}%", speed.mrays_per_s, 100.0 * speed.spread)
+        }
+    };
+    let of = &measured.rays;
+    let build = if measured.has_tree {
+        format!("{:.2}", measured.build.spheres_per_s * 1e-6)
+    } else {
+        "-".into()
+    };
+    format!(
+        "{:<12} {:>9} {:>5}  {:>15} {:>15} {:>15} {:>15}  {build:>13} {:>8.1}\n",
+        measured.scene,
+        measured.spheres,
+        if measured.has_tree { "yes" } else { "no" },
+        rays(&of.primary),
+        rays(&of.shadow),
+        rays(&of.ambient),
+        rays(&of.incoherent),
+        measured.bytes_per_sphere,
+    )
+}

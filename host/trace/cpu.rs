@@ -1,0 +1,121 @@
+//! [`CpuTracer`]: rays on every thread of this machine.
+
+use rayon::prelude::*;
+use spherule_kernel::nearest::{is_occluded, nearest_hit_in};
+use spherule_kernel::tree::{Node, is_occluded_in_tree, nearest_hit_in_tree, work_in_tree};
+use spherule_kernel::{Hit, Ray, Rung, Sphere};
+
+use crate::scene::tree::{self, Acceleration};
+
+/// Rays that a thread takes at once.
+const GRAIN: usize = 1 << 10;
+
+/// Spheres, and the tree over them if one pays.
+#[derive(Clone, Debug)]
+pub struct CpuTracer {
+    spheres: Vec<Sphere>,
+    nodes: Vec<Node>,
+    /// For each sphere, its index as it was given; empty without a tree.
+    order: Vec<u32>,
+}
+
+impl CpuTracer {
+    /// Grows the tree.
+    #[must_use]
+    pub fn new(spheres: &[Sphere], acceleration: Acceleration) -> Self {
+        match tree::grow(spheres, &[], (0.0, 0.0), acceleration) {
+            Some(tree) => Self {
+                spheres: tree.sort(spheres),
+                nodes: tree.nodes,
+                order: tree.order,
+            },
+            None => Self {
+                spheres: spheres.to_vec(),
+                nodes: Vec::new(),
+                order: Vec::new(),
+            },
+        }
+    }
+
+    /// The memory that tracing takes, in bytes.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.spheres[..]) + size_of_val(&self.nodes[..])
+    }
+
+    /// Finds the nearest hit of each ray; spheres by their indices as they were given. `hits` gets as
+    /// long as `rays`.
+    pub fn nearest(&self, rung: Rung, rays: &[Ray], hits: &mut Vec<Hit>) {
+        hits.resize(rays.len(), Hit::NONE);
+        let trace = match rung {
+            Rung::Textbook => Self::nearest_on::<{ Rung::Textbook.to_u32() }>,
+            Rung::Robust => Self::nearest_on::<{ Rung::Robust.to_u32() }>,
+            Rung::Compensated => Self::nearest_on::<{ Rung::Compensated.to_u32() }>,
+            Rung::Double => Self::nearest_on::<{ Rung::Double.to_u32() }>,
+            Rung::Certified => Self::nearest_on::<{ Rung::Certified.to_u32() }>,
+        };
+        hits.par_chunks_mut(GRAIN)
+            .zip(rays.par_chunks(GRAIN))
+            .for_each(|(hits, rays)| trace(self, rays, hits));
+    }
+
+    /// Whether each ray hits anything, 1 or 0. `occluded` gets as long as `rays`.
+    pub fn occluded(&self, rung: Rung, rays: &[Ray], occluded: &mut Vec<u32>) {
+        occluded.resize(rays.len(), 0);
+        let trace = match rung {
+            Rung::Textbook => Self::occluded_on::<{ Rung::Textbook.to_u32() }>,
+            Rung::Robust => Self::occluded_on::<{ Rung::Robust.to_u32() }>,
+            Rung::Compensated => Self::occluded_on::<{ Rung::Compensated.to_u32() }>,
+            Rung::Double => Self::occluded_on::<{ Rung::Double.to_u32() }>,
+            Rung::Certified => Self::occluded_on::<{ Rung::Certified.to_u32() }>,
+        };
+        occluded
+            .par_chunks_mut(GRAIN)
+            .zip(rays.par_chunks(GRAIN))
+            .for_each(|(occluded, rays)| trace(self, rays, occluded));
+    }
+
+    /// What the rays take in the tree, all together; `None` without one.
+    #[must_use]
+    pub fn work(&self, rung: Rung, any: bool, rays: &[Ray]) -> Option<(u64, u64)> {
+        if self.nodes.is_empty() {
+            return None;
+        }
+        let spheres = &self.spheres[..];
+        let of = |ray: &Ray| {
+            let work = work_in_tree(rung.to_u32(), any, ray, &self.nodes, spheres);
+            (u64::from(work.nodes), u64::from(work.spheres))
+        };
+        Some(
+            rays.par_iter()
+                .map(of)
+                .reduce(|| (0, 0), |a, b| (a.0 + b.0, a.1 + b.1)),
+        )
+    }
+
+    fn nearest_on<const RUNG: u32>(&self, rays: &[Ray], hits: &mut [Hit]) {
+        let spheres = &self.spheres[..];
+        for (ray, hit) in rays.iter().zip(hits) {
+            *hit = if self.nodes.is_empty() {
+                nearest_hit_in(RUNG, ray, spheres, 0, u32::MAX)
+            } else {
+                let mut hit = nearest_hit_in_tree(RUNG, ray, &self.nodes, spheres);
+                if hit.is_some() {
+                    hit.sphere = self.order[hit.sphere as usize];
+                }
+                hit
+            };
+        }
+    }
+
+    fn occluded_on<const RUNG: u32>(&self, rays: &[Ray], occluded: &mut [u32]) {
+        let spheres = &self.spheres[..];
+        for (ray, occluded) in rays.iter().zip(occluded) {
+            *occluded = u32::from(if self.nodes.is_empty() {
+                is_occluded(RUNG, ray, spheres)
+            } else {
+                is_occluded_in_tree(RUNG, ray, &self.nodes, spheres)
+            });
+        }
+    }
+}

@@ -1,0 +1,144 @@
+//! [`GpuTracer`]: rays on a GPU.
+
+use std::time::Duration;
+
+use spherule_kernel::tree::Node;
+use spherule_kernel::{Hit, Ray, Rung, Sphere};
+
+use crate::device::{Access, Buffer, Gpu, Kernel};
+use crate::error::Result;
+use crate::kernel_module;
+use crate::scene::tree::{self, Acceleration};
+
+/// Spheres on a GPU, and the tree over them if one pays.
+#[derive(Debug)]
+pub struct GpuTracer<'a> {
+    gpu: &'a Gpu,
+    spheres: Buffer<Sphere>,
+    /// `None` without a tree.
+    nodes: Option<Buffer<Node>>,
+    /// For each sphere, its index as it was given; empty without a tree.
+    order: Vec<u32>,
+}
+
+/// Rays on a GPU, and room for what is asked of them.
+#[derive(Debug)]
+pub struct Batch {
+    rays: Buffer<Ray>,
+    hits: Buffer<Hit>,
+    occluded: Buffer<u32>,
+}
+
+impl<'a> GpuTracer<'a> {
+    /// Grows the tree, and uploads it.
+    ///
+    /// # Errors
+    ///
+    /// The device's errors, here and in the other functions.
+    pub fn new(gpu: &'a Gpu, spheres: &[Sphere], acceleration: Acceleration) -> Result<Self> {
+        Ok(match tree::grow(spheres, &[], (0.0, 0.0), acceleration) {
+            Some(tree) => Self {
+                gpu,
+                spheres: gpu.upload("spheres", &tree.sort(spheres))?,
+                nodes: Some(gpu.upload("nodes", &tree.nodes)?),
+                order: tree.order,
+            },
+            None => Self {
+                gpu,
+                spheres: gpu.upload("spheres", spheres)?,
+                nodes: None,
+                order: Vec::new(),
+            },
+        })
+    }
+
+    /// Uploads rays.
+    ///
+    /// # Errors
+    ///
+    /// The device's errors.
+    pub fn upload(&self, rays: &[Ray]) -> Result<Batch> {
+        Ok(Batch {
+            rays: self.gpu.upload("rays", rays)?,
+            hits: self.gpu.zeroed("hits", rays.len())?,
+            occluded: self.gpu.zeroed("occluded", rays.len())?,
+        })
+    }
+
+    /// Finds the nearest hit of each ray, and how long it took on the device if that can be told.
+    ///
+    /// # Errors
+    ///
+    /// The device's errors.
+    pub fn nearest(&self, rung: Rung, batch: &Batch) -> Result<Duration> {
+        let names = ["trace_rays", "trace_rays_in_tree"];
+        self.launch(rung, names, batch, batch.hits.binding())
+    }
+
+    /// Finds whether each ray hits anything.
+    ///
+    /// # Errors
+    ///
+    /// The device's errors.
+    pub fn occluded(&self, rung: Rung, batch: &Batch) -> Result<Duration> {
+        let names = ["occlude_rays", "occlude_rays_in_tree"];
+        self.launch(rung, names, batch, batch.occluded.binding())
+    }
+
+    /// What [`GpuTracer::nearest`] found; spheres by their indices as they were given.
+    ///
+    /// # Errors
+    ///
+    /// The device's errors.
+    pub fn hits(&self, batch: &Batch) -> Result<Vec<Hit>> {
+        let mut hits = self.gpu.read(&batch.hits)?;
+        if !self.order.is_empty() {
+            for hit in hits.iter_mut().filter(|hit| hit.is_some()) {
+                hit.sphere = self.order[hit.sphere as usize];
+            }
+        }
+        Ok(hits)
+    }
+
+    /// What [`GpuTracer::occluded`] found, 1 or 0.
+    ///
+    /// # Errors
+    ///
+    /// The device's errors.
+    pub fn occlusions(&self, batch: &Batch) -> Result<Vec<u32>> {
+        self.gpu.read(&batch.occluded)
+    }
+
+    fn launch(
+        &self,
+        rung: Rung,
+        [brute_force, in_tree]: [&str; 2],
+        batch: &Batch,
+        output: crate::device::Binding<'_>,
+    ) -> Result<Duration> {
+        let module = kernel_module::for_rung(rung)?;
+        let (rays, spheres) = (batch.rays.binding(), self.spheres.binding());
+        let (read, write) = (Access::Read, Access::ReadWrite);
+        let kernel: Kernel;
+        let bindings = match &self.nodes {
+            Some(nodes) => {
+                kernel = self
+                    .gpu
+                    .kernel(&module, in_tree, &[read, read, read, write])?;
+                vec![rays, spheres, nodes.binding(), output]
+            }
+            None => {
+                kernel = self
+                    .gpu
+                    .kernel(&module, brute_force, &[read, read, write])?;
+                vec![rays, spheres, output]
+            }
+        };
+        // Row upon row of workgroups, where they are more than fit one.
+        let [groups, ..] = kernel.workgroups_for([batch.rays.len() as u32, 1, 1]);
+        let row = self.gpu.limits().max_compute_workgroups_per_dimension;
+        let rows = groups.div_ceil(row.max(1));
+        let groups = [groups.min(row), rows, 1];
+        Ok(self.gpu.launch(&kernel, &bindings, groups)?.best())
+    }
+}
