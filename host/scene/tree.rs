@@ -368,22 +368,17 @@ fn make_node<'a>(
         sorted[place] = Some(part);
     }
     let mut inner = Vec::new();
-    let mut spheres = 0;
     for (place, part) in sorted.into_iter().enumerate() {
         let Some(part) = part else { continue };
         grid.put(&part.bounds, place, &mut node);
         let count = part.items.len();
-        let meta = if count <= Node::MAX_LEAF {
+        if count <= Node::MAX_LEAF {
             order.extend(part.items.iter().map(Item::index));
-            let meta = ((1 << count) - 1) << 5 | spheres;
-            spheres += count as u32;
-            meta
+            node.links.z |= (count as u32) << (4 * place);
         } else {
             node.grid.w |= 1 << (24 + place);
             inner.push(part);
-            1 << 5 | (24 + place as u32)
-        };
-        put_byte(&mut node.links, 8 + place, meta);
+        }
     }
     (node, inner)
 }
@@ -907,7 +902,7 @@ mod tests {
                         f64::from(corner[axis]) + f64::from(steps[axis]) * 2_f64.powi(exponent)
                     }))
                 };
-                (at(low), at(high), byte(node.links, 8 + place))
+                (at(low), at(high), node.links.z >> (4 * place) & 15)
             })
             .collect()
     }
@@ -926,24 +921,26 @@ mod tests {
         let node = grown.nodes[at];
         let mut all = Bounds::EMPTY;
         let mut inner = 0;
-        for (place, (low, high, meta)) in children(&node).into_iter().enumerate() {
+        let mut next = node.links.y;
+        for (place, (low, high, count)) in children(&node).into_iter().enumerate() {
             let is_node = node.grid.w >> (24 + place) & 1 == 1;
             let inside = if is_node {
-                assert_eq!(meta, 32 + 24 + place as u32);
+                assert_eq!(count, 0);
                 let child = node.links.x as usize + inner;
                 inner += 1;
                 visit(grown, child, depth + 1, seen, nodes)
             } else {
                 let mut bounds = Bounds::EMPTY;
-                for index in 0..(meta >> 5).count_ones() {
-                    let index = (node.links.y + (meta & 31) + index) as usize;
+                for index in next..next + count {
+                    let index = index as usize;
                     assert!(!seen[index]);
                     seen[index] = true;
                     bounds = bounds.with(Bounds::of(&grown.world.spheres[index]));
                 }
+                next += count;
                 bounds
             };
-            if meta != 0 {
+            if is_node || count > 0 {
                 let inner_low = inside.low.truncate().as_dvec3();
                 let inner_high = inside.high.truncate().as_dvec3();
                 assert!(low.cmple(inner_low).all() && high.cmpge(inner_high).all());

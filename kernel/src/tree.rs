@@ -28,6 +28,8 @@
 //!
 //! Coordinates are to be below 2⁶⁰.
 
+use core::mem::MaybeUninit;
+
 use bytemuck::{Pod, Zeroable};
 use glam::{UVec2, UVec4, Vec3};
 use spirv_std::arch::IndexUnchecked;
@@ -40,7 +42,7 @@ use crate::nearest::Spheres;
 use crate::precision::{Rung, intersect};
 use crate::ray::Ray;
 
-/// Up to eight boxes on a grid, and what is in them: a node each, or one to three spheres.
+/// Up to eight boxes on a grid, and what is in them: a node each, or one to four spheres.
 ///
 /// The first of a tree's nodes is none: it is the [`Extent`]. The second is the root.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
@@ -50,8 +52,8 @@ pub struct Node {
     /// of its steps along x, y, z, and which children are nodes.
     pub grid: UVec4,
     /// The index of the first child that is a node, the others follow; the index of the first sphere in
-    /// any child, the others follow; and a byte a child. Of a node, 32 + 24 + its place; of
-    /// spheres, how many, in unary, times 32, plus where they start, counted from the first; 0 for none.
+    /// any child, the others follow, child by child; how many each child has, four bits a child from the lowest;
+    /// and nothing.
     pub links: UVec4,
     /// The eight children's smallest x, a byte each, then their smallest y.
     pub low_xy: UVec4,
@@ -65,9 +67,9 @@ impl Node {
     /// The most children.
     pub const WIDTH: usize = 8;
     /// The most spheres in a child.
-    pub const MAX_LEAF: usize = 3;
+    pub const MAX_LEAF: usize = 4;
     /// The most nodes on the way from the root to a leaf.
-    pub const MAX_DEPTH: usize = 32;
+    pub const MAX_DEPTH: usize = 20;
     /// The most spheres that a tree has room to name.
     pub const MAX_SPHERES: u32 = 1 << 30;
     /// Where the root is.
@@ -155,7 +157,7 @@ struct Slabs {
     unit: f32,
     /// The start of the ray's interval.
     start: f32,
-    /// Bit k set where the direction is positive along axis k; the same in each byte.
+    /// Bit k set where the direction is positive along axis k.
     octant: u32,
 }
 
@@ -183,12 +185,11 @@ impl Slabs {
             widening,
             unit,
             start: ray.t_min * unit,
-            octant: octant * 0x0101_0101,
+            octant,
         }
     }
 
-    /// The children that the ray may meet before `end`: bits 24 to 31 for nodes, the first to be
-    /// visited highest, and below them a bit for each sphere.
+    /// The children that the ray may meet before `end`, a bit each.
     #[inline]
     fn meets(&self, node: &Node, end: f32) -> u32 {
         let exponents = node.grid.w;
@@ -199,7 +200,7 @@ impl Slabs {
         ) * self.inverse;
         let offset = (corner(node.grid) - self.origin) * self.inverse;
         let slack = (offset.abs() + step.abs() * 256.0) * (16.0 * U) + self.widening;
-        let four = FourBoxes {
+        let boxes = Boxes {
             step,
             near: offset - slack,
             far: offset + slack,
@@ -207,16 +208,12 @@ impl Slabs {
             end: end + end.abs() * (16.0 * U),
         };
         let (low_xy, mixed, high_yz) = (node.low_xy, node.low_z_high_x, node.high_yz);
-        let (mut near_x, mut far_x) =
-            (UVec2::new(low_xy.x, low_xy.y), UVec2::new(mixed.z, mixed.w));
-        let (mut near_y, mut far_y) = (
-            UVec2::new(low_xy.z, low_xy.w),
-            UVec2::new(high_yz.x, high_yz.y),
-        );
-        let (mut near_z, mut far_z) = (
-            UVec2::new(mixed.x, mixed.y),
-            UVec2::new(high_yz.z, high_yz.w),
-        );
+        let mut near_x = UVec2::new(low_xy.x, low_xy.y);
+        let mut near_y = UVec2::new(low_xy.z, low_xy.w);
+        let mut near_z = UVec2::new(mixed.x, mixed.y);
+        let mut far_x = UVec2::new(mixed.z, mixed.w);
+        let mut far_y = UVec2::new(high_yz.x, high_yz.y);
+        let mut far_z = UVec2::new(high_yz.z, high_yz.w);
         if self.inverse.x < 0.0 {
             (near_x, far_x) = (far_x, near_x);
         }
@@ -228,21 +225,30 @@ impl Slabs {
         }
         let first = [near_x.x, near_y.x, near_z.x, far_x.x, far_y.x, far_z.x];
         let last = [near_x.y, near_y.y, near_z.y, far_x.y, far_y.y, far_z.y];
-        four.meets(first, self.places(node.links.z)) | four.meets(last, self.places(node.links.w))
+        boxes.meets_four(first) | boxes.meets_four(last) << 4
     }
 
-    /// The places of nodes among four children, by the order of the visit.
+    /// The children's bits in the order of the visit, the first highest: child c at c with the
+    /// bits of the octant flipped.
     #[inline]
-    fn places(&self, meta: u32) -> u32 {
-        // Bits 3 and 4 of a byte are both set in that of a node and in no other.
-        let is_node = (meta & (meta << 1) & 0x1010_1010) >> 4;
-        meta ^ (self.octant & (is_node * 7))
+    fn in_order(&self, children: u32) -> u32 {
+        let mut bits = children;
+        if self.octant & 1 != 0 {
+            bits = ((bits & 0x55) << 1) | ((bits >> 1) & 0x55);
+        }
+        if self.octant & 2 != 0 {
+            bits = ((bits & 0x33) << 2) | ((bits >> 2) & 0x33);
+        }
+        if self.octant & 4 != 0 {
+            bits = ((bits & 0x0f) << 4) | (bits >> 4);
+        }
+        bits
     }
 }
 
-/// Planes of four boxes, as parameters along a ray: q·step + near or far, q a byte.
+/// Planes of boxes, as parameters along a ray: q·step + near or far, q a byte.
 #[derive(Clone, Copy)]
-struct FourBoxes {
+struct Boxes {
     step: Vec3,
     near: Vec3,
     far: Vec3,
@@ -250,18 +256,16 @@ struct FourBoxes {
     end: f32,
 }
 
-impl FourBoxes {
-    /// The bits of those of the four that are met; `planes` are near x, y, z and far x, y, z.
+impl Boxes {
+    /// Which of four are met, a bit each; `planes` are near x, y, z and far x, y, z, a byte each.
     #[inline]
-    fn meets(&self, planes: [u32; 6], meta: u32) -> u32 {
-        self.meets_one(planes, meta, 0)
-            | self.meets_one(planes, meta, 8)
-            | self.meets_one(planes, meta, 16)
-            | self.meets_one(planes, meta, 24)
+    fn meets_four(&self, planes: [u32; 6]) -> u32 {
+        let bit = |index: u32| u32::from(self.meets_one(planes, 8 * index)) << index;
+        bit(0) | bit(1) | bit(2) | bit(3)
     }
 
     #[inline]
-    fn meets_one(&self, planes: [u32; 6], meta: u32, shift: u32) -> u32 {
+    fn meets_one(&self, planes: [u32; 6], shift: u32) -> bool {
         let byte = |word: u32| ((word >> shift) & 0xff) as f32;
         let near_x = byte(planes[0]) * self.step.x + self.near.x;
         let near_y = byte(planes[1]) * self.step.y + self.near.y;
@@ -271,9 +275,7 @@ impl FourBoxes {
         let far_z = byte(planes[5]) * self.step.z + self.far.z;
         let near = near_x.max(near_y).max(near_z.max(self.start));
         let far = far_x.min(far_y).min(far_z.min(self.end));
-        let meta = meta >> shift;
-        let bits = ((meta >> 5) & 7) << (meta & 31);
-        if near <= far { bits } else { 0 }
+        near <= far
     }
 }
 
@@ -360,7 +362,7 @@ fn walk<const ANY: bool, S: Spheres + ?Sized>(
     let mut ray = *ray;
     let mut end = ray.t_max * slabs.unit;
 
-    let mut stack = [UVec2::ZERO; Node::MAX_DEPTH];
+    let mut stack = [MaybeUninit::<UVec2>::uninit(); Node::MAX_DEPTH];
     let mut height = 0;
     // A group of nodes: where the first is, and which are to be visited (bits 24 to 31), which are
     // there (bits 0 to 7). The root is one alone.
@@ -372,10 +374,12 @@ fn walk<const ANY: bool, S: Spheres + ?Sized>(
         group ^= 1 << bit;
         if group > 0x00ff_ffff && height < Node::MAX_DEPTH {
             // SAFETY: `height` is below the array's length.
-            unsafe { *stack.index_unchecked_mut(height) = UVec2::new(first, group) };
+            unsafe {
+                *stack.index_unchecked_mut(height) = MaybeUninit::new(UVec2::new(first, group))
+            };
             height += 1;
         }
-        let place = (bit - 24) ^ (slabs.octant & 7);
+        let place = (bit - 24) ^ slabs.octant;
         let before = (group & 0xff & ((1 << place) - 1)).count_ones();
         // A tree's links are within it; that this one is one is not known, so that it is cut.
         let at = (first + before).min(nodes.len() as u32 - 1);
@@ -384,12 +388,21 @@ fn walk<const ANY: bool, S: Spheres + ?Sized>(
         let met = slabs.meets(&node, end);
         work.nodes += 1;
 
-        let mut left = met & 0x00ff_ffff;
-        while left != 0 {
-            let index = node.links.y + left.trailing_zeros();
-            left &= left - 1;
-            if index < spheres.count() {
-                // SAFETY: `index` is below the number of spheres.
+        let inner = node.grid.w >> 24;
+        let counts = node.links.z;
+        let mut leaves = met & !inner;
+        let mut index = 0;
+        let mut end_index = 0;
+        while (leaves != 0) | (index < end_index) {
+            if index == end_index {
+                let child = leaves.trailing_zeros();
+                leaves &= leaves - 1;
+                index = node.links.y + sum_of_nibbles(counts & ((1 << (4 * child)) - 1));
+                end_index = index + ((counts >> (4 * child)) & 15);
+                end_index = end_index.min(spheres.count());
+            }
+            if index < end_index {
+                // SAFETY: `end_index` is at most the number of spheres.
                 let sphere = unsafe { spheres.sphere(index) };
                 let t = intersect(rung, sphere, &ray);
                 work.spheres += 1;
@@ -404,22 +417,30 @@ fn walk<const ANY: bool, S: Spheres + ?Sized>(
                     ray.t_max = next_up(t);
                     end = ray.t_max * slabs.unit;
                 }
+                index += 1;
             }
         }
 
         first = node.links.x;
-        group = (met & 0xff00_0000) | (node.grid.w >> 24);
-        if met <= 0x00ff_ffff {
+        group = slabs.in_order(met & inner) << 24 | inner;
+        if met & inner == 0 {
             if height == 0 {
                 return hit;
             }
             height -= 1;
             // SAFETY: `height` is below the array's length.
-            let next = unsafe { *stack.index_unchecked(height) };
+            let next = unsafe { (*stack.index_unchecked(height)).assume_init() };
             first = next.x;
             group = next.y;
         }
     }
+}
+
+/// The sum of eight numbers of four bits.
+#[inline]
+fn sum_of_nibbles(nibbles: u32) -> u32 {
+    let bytes = (nibbles & 0x0f0f_0f0f) + ((nibbles >> 4) & 0x0f0f_0f0f);
+    bytes.wrapping_mul(0x0101_0101) >> 24
 }
 
 /// The next larger float.
