@@ -59,6 +59,7 @@ fn the_modules_have_the_entry_points_that_the_host_calls() {
             "occlude_rays",
             "occlude_rays_in_tree",
             "render",
+            "render_by_tiles",
             "shade_hits",
             "trace_paths",
             "trace_rays",

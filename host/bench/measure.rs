@@ -97,7 +97,7 @@ impl Speed {
 }
 
 /// How long a GPU is kept busy before anything is timed.
-const WARM_UP: Duration = Duration::from_secs(1);
+const WARM_UP: Duration = Duration::from_secs(2);
 
 /// The median, and half of the range.
 fn median(times: &mut [f64]) -> (f64, f64) {
@@ -254,10 +254,11 @@ fn on_gpu(
     ];
     let mut times = Kind::ALL.map(|_| Vec::new());
     let mut found = [0; Kind::ALL.len()];
-    // A GPU that has been idle runs at a fraction of its clock.
-    let started = Instant::now();
-    while !sets.ambient.is_empty() && started.elapsed() < WARM_UP {
-        tracer.occluded(plan.rung, &batches[Kind::Ambient as usize - 1])?;
+    if !gpu.is_software() && !sets.ambient.is_empty() {
+        let started = Instant::now();
+        while started.elapsed() < WARM_UP {
+            tracer.heat(&batches[Kind::Ambient as usize - 1])?;
+        }
     }
     for round in 0..=plan.rounds {
         for kind in Kind::ALL {
@@ -265,6 +266,7 @@ fn on_gpu(
             if sets.kind(kind).is_empty() {
                 continue;
             }
+            tracer.heat(&batches[Kind::Ambient as usize - 1])?;
             let took = if kind == Kind::Primary {
                 let (pixels, timings) = render::gpu::render(gpu, &launch, &world, QUIET)?;
                 found[index] = pixels.iter().filter(|pixel| pixel.is_hit()).count();
@@ -285,6 +287,7 @@ fn on_gpu(
         let occluded = tracer.occlusions(&batches[index - 1])?;
         found[index] = occluded.iter().filter(|hit| **hit != 0).count();
     }
+    tracer.nearest(plan.rung, &batches[Kind::Incoherent as usize - 1])?;
     let hits = tracer.hits(&batches[Kind::Incoherent as usize - 1])?;
     found[Kind::Incoherent as usize] = hits.iter().filter(|hit| hit.is_some()).count();
     Ok(speeds(sets, found, times))

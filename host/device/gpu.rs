@@ -106,6 +106,7 @@ pub struct Gpu {
     device: wgpu::Device,
     queue: wgpu::Queue,
     name: String,
+    is_software: bool,
     passthrough: bool,
     timeout: Duration,
     /// Locked while a launch uses it: there is one pair of timestamps.
@@ -141,7 +142,9 @@ impl Gpu {
     ///
     /// [`Error::DeviceRefused`] with the driver's reason.
     pub fn from_adapter(adapter: &wgpu::Adapter, options: GpuOptions) -> Result<Self> {
-        let name = adapter.get_info().name;
+        let info = adapter.get_info();
+        let is_software = info.device_type == wgpu::DeviceType::Cpu;
+        let name = info.name;
         let passthrough = adapter::takes_spirv(adapter) && !options.through_naga;
         let mut wanted = wgpu::Features::SHADER_F64 | wgpu::Features::TIMESTAMP_QUERY;
         if passthrough {
@@ -172,6 +175,7 @@ impl Gpu {
             device,
             queue,
             name,
+            is_software,
             passthrough,
             timeout: options.timeout,
             timer,
@@ -184,6 +188,12 @@ impl Gpu {
     #[must_use]
     pub fn name(&self) -> &str {
         &self.name
+    }
+
+    /// Whether the adapter is a program on the CPU.
+    #[must_use]
+    pub fn is_software(&self) -> bool {
+        self.is_software
     }
 
     /// Whether SPIR-V reaches the driver as it is, rather than through naga.

@@ -18,8 +18,8 @@ use crate::kernel_module;
 use crate::scene::World;
 use crate::scene::tree::{self, Tree};
 
-/// The entry point's name, for messages.
-const ENTRY: &str = "render";
+/// From this many spheres on, those without a tree are gone through tile by tile.
+const MIN_FOR_TILES: usize = 16;
 /// What a ray takes in a tree, in intersections: a first guess, of which [`Pace`] learns more.
 const WORK_IN_TREE: u64 = 100;
 
@@ -31,6 +31,7 @@ pub struct Prepared {
     parts: Vec<Part>,
     materials: Buffer<Material>,
     has_trees: bool,
+    by_tiles: bool,
     /// What a pixel takes, in intersections.
     work: u64,
 }
@@ -85,11 +86,19 @@ impl Prepared {
         let module = kernel_module::for_rung(settings.rung)?
             .specialise(Shading::SPEC_ID, settings.shading.to_u32())?
             .specialise(Node::SPEC_ID, trees.is_some().into())?;
-        let mut access = [Access::Read; 6];
-        access[0] = Access::Uniform;
-        access[5] = Access::ReadWrite;
+        let by_tiles = trees.is_none() && count >= MIN_FOR_TILES;
+        let mut access = vec![Access::Read; if by_tiles { 5 } else { 6 }];
+        if let [first, .., last] = &mut access[..] {
+            (*first, *last) = (Access::Uniform, Access::ReadWrite);
+        }
+        let entry = if by_tiles {
+            "render_by_tiles"
+        } else {
+            "render"
+        };
         Ok(Self {
-            kernel: gpu.kernel(&module, ENTRY, &access)?,
+            kernel: gpu.kernel(&module, entry, &access)?,
+            by_tiles,
             parts: parts.collect::<Result<_>>()?,
             materials: gpu.upload("materials", &world.materials)?,
             has_trees: trees.is_some(),
@@ -192,18 +201,21 @@ fn render_tile(
                 left.min(pace.spheres(pixels))
             };
             gpu.update(&target.launch, &launch)?;
-            let time = gpu.launch(
-                &world.kernel,
-                &[
-                    target.launch.binding(),
-                    part.spheres.binding(),
-                    part.material_ids.binding(),
-                    world.materials.binding(),
-                    part.nodes.binding(),
-                    target.pixels.binding(),
-                ],
-                world.kernel.workgroups_for([tile.x, tile.y, 1]),
-            )?;
+            let mut bindings = vec![
+                target.launch.binding(),
+                part.spheres.binding(),
+                part.material_ids.binding(),
+                world.materials.binding(),
+            ];
+            // A thread has four pixels.
+            let mut threads = [tile.x.div_ceil(2), tile.y.div_ceil(2), 1];
+            if !world.by_tiles {
+                bindings.push(part.nodes.binding());
+                threads = [tile.x, tile.y, 1];
+            }
+            bindings.push(target.pixels.binding());
+            let groups = world.kernel.workgroups_for(threads);
+            let time = gpu.launch(&world.kernel, &bindings, groups)?;
             let work = if world.has_trees {
                 world.work
             } else {
@@ -231,9 +243,6 @@ fn check_written(gpu: &Gpu, pixels: &[Pixel]) -> Result<()> {
     Err(Error::Readback {
         what: "the image".into(),
         device: gpu.name().into(),
-        reason: format!(
-            "{missing} of {} threads of {ENTRY} wrote no pixel",
-            pixels.len()
-        ),
+        reason: format!("{missing} of {} pixels were not written", pixels.len()),
     })
 }

@@ -4,12 +4,14 @@
 //! Bindings are in descriptor set 0, in the order of the parameters. Buffers are as long as
 //! the work; threads beyond it return.
 
-use glam::{UVec2, UVec3, Vec4};
+use glam::{UVec2, UVec3, UVec4, Vec4};
+use spirv_std::arch::{IndexUnchecked, workgroup_memory_barrier_with_group_sync};
 use spirv_std::spirv;
 
 use crate::canary::{Operands, Outcome, sing};
 #[cfg(any(not(target_arch = "spirv"), feature = "f64"))]
 use crate::canary::{WideOutcome, sing_wide};
+use crate::candidates::{Shared, all_miss, candidates, discriminants};
 use crate::film::render_pixel;
 use crate::integrate::{Scenery, trace_pixel};
 use crate::nearest::{is_occluded, nearest_hit_in};
@@ -55,6 +57,194 @@ pub fn render(
             );
         }
     }
+}
+
+/// Spheres that a workgroup keeps at hand.
+const TILE: usize = 256;
+
+/// [`render`] for many spheres without a tree: a workgroup works out once what its 16 by 16 pixels
+/// share of a sphere, and each thread goes through the spheres with four of the pixels.
+#[spirv(compute(threads(8, 8), entry_point_name = "render_by_tiles"))]
+pub fn render_by_tiles(
+    #[spirv(local_invocation_id)] local: UVec3,
+    #[spirv(workgroup_id)] group: UVec3,
+    #[spirv(spec_constant(id = 0, default = 0))] shading: u32,
+    #[spirv(spec_constant(id = 1, default = 1))] rung: u32,
+    #[spirv(uniform, descriptor_set = 0, binding = 0)] launch: &Launch,
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 1)] spheres: &[Sphere],
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 2)] material_ids: &[u32],
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 3)] materials: &[Material],
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 4)] pixels: &mut [Pixel],
+    #[spirv(workgroup)] tile: &mut [Vec4; TILE],
+) {
+    let thread = local.y * 8 + local.x;
+    let pixel_0 = UVec2::new(group.x * 16 + local.x, group.y * 16 + local.y);
+    let pixel_1 = pixel_0 + UVec2::new(8, 0);
+    let pixel_2 = pixel_0 + UVec2::new(0, 8);
+    let pixel_3 = pixel_0 + UVec2::new(8, 8);
+    let held_0 = pixel_of(pixels, launch, pixel_0);
+    let held_1 = pixel_of(pixels, launch, pixel_1);
+    let held_2 = pixel_of(pixels, launch, pixel_2);
+    let held_3 = pixel_of(pixels, launch, pixel_3);
+    let ray_0 = launch.ray(pixel_0, held_0);
+    let ray_1 = launch.ray(pixel_1, held_1);
+    let ray_2 = launch.ray(pixel_2, held_2);
+    let ray_3 = launch.ray(pixel_3, held_3);
+    let a_0 = ray_0.direction.dot(ray_0.direction);
+    let a_1 = ray_1.direction.dot(ray_1.direction);
+    let a_2 = ray_2.direction.dot(ray_2.direction);
+    let a_3 = ray_3.direction.dot(ray_3.direction);
+    // Only what changes is carried from round to round.
+    let mut t_max = Vec4::new(ray_0.t_max, ray_1.t_max, ray_2.t_max, ray_3.t_max);
+    let mut found = UVec4::splat(Hit::NONE_SPHERE);
+
+    let len = spheres.len() as u32;
+    let begin = launch.first_sphere.min(len);
+    let end = begin + launch.sphere_count.min(len - begin);
+    let mut first = begin;
+    while first < end {
+        // The loop's bounds are the same for every thread of the workgroup.
+        workgroup_memory_barrier_with_group_sync();
+        let mut at = thread;
+        while at < TILE as u32 {
+            let mut shared = Shared::none();
+            if first + at < end {
+                // SAFETY: `end` is at most the number of spheres.
+                let sphere = unsafe { *spheres.index_unchecked((first + at) as usize) };
+                shared = Shared::of(sphere, launch.camera.eye);
+            }
+            // SAFETY: `at` is below the tile's size.
+            unsafe { *tile.index_unchecked_mut(at as usize) = shared.to_vec4() };
+            at += 64;
+        }
+        workgroup_memory_barrier_with_group_sync();
+        let count = (end - first).min(TILE as u32);
+        let mut at = 0;
+        while at < count {
+            // SAFETY: `at` is below the tile's size, and both are multiples of four.
+            let (s0, s1, s2, s3) = unsafe {
+                (
+                    Shared::from_vec4(*tile.index_unchecked(at as usize)),
+                    Shared::from_vec4(*tile.index_unchecked(at as usize + 1)),
+                    Shared::from_vec4(*tile.index_unchecked(at as usize + 2)),
+                    Shared::from_vec4(*tile.index_unchecked(at as usize + 3)),
+                )
+            };
+            let d0 = discriminants(ray_0.direction, a_0, s0, s1, s2, s3);
+            let d1 = discriminants(ray_1.direction, a_1, s0, s1, s2, s3);
+            let d2 = discriminants(ray_2.direction, a_2, s0, s1, s2, s3);
+            let d3 = discriminants(ray_3.direction, a_3, s0, s1, s2, s3);
+            if (all_miss(d0) & all_miss(d1) & all_miss(d2) & all_miss(d3)) >> 31 == 0 {
+                let mut left = candidates(d0)
+                    | candidates(d1) << 4
+                    | candidates(d2) << 8
+                    | candidates(d3) << 12;
+                // The rung's code stands here once, for whichever ray.
+                while left != 0 {
+                    let candidate = left.trailing_zeros();
+                    left &= left - 1;
+                    let index = first + at + (candidate & 3);
+                    let which = candidate >> 2;
+                    if index < end {
+                        let mut direction = ray_0.direction;
+                        let mut end_t = t_max.x;
+                        if which == 1 {
+                            direction = ray_1.direction;
+                            end_t = t_max.y;
+                        }
+                        if which == 2 {
+                            direction = ray_2.direction;
+                            end_t = t_max.z;
+                        }
+                        if which == 3 {
+                            direction = ray_3.direction;
+                            end_t = t_max.w;
+                        }
+                        // SAFETY: `end` is at most the number of spheres.
+                        let sphere = unsafe { *spheres.index_unchecked(index as usize) };
+                        let ray = Ray::within(ray_0.origin, direction, ray_0.t_min, end_t);
+                        let t = intersect(rung, sphere, &ray);
+                        if t < end_t {
+                            if which == 0 {
+                                (t_max.x, found.x) = (t, index);
+                            }
+                            if which == 1 {
+                                (t_max.y, found.y) = (t, index);
+                            }
+                            if which == 2 {
+                                (t_max.z, found.z) = (t, index);
+                            }
+                            if which == 3 {
+                                (t_max.w, found.w) = (t, index);
+                            }
+                        }
+                    }
+                }
+            }
+            at += 4;
+        }
+        first += TILE as u32;
+    }
+
+    let place = place_of(pixels, launch, pixel_0);
+    if place < pixels.len() {
+        let hit = Hit {
+            t: t_max.x,
+            sphere: found.x,
+        };
+        let ray = ray_0;
+        pixels[place] = launch.pixel(shading, &ray, hit, spheres, material_ids, materials, held_0);
+    }
+    let place = place_of(pixels, launch, pixel_1);
+    if place < pixels.len() {
+        let hit = Hit {
+            t: t_max.y,
+            sphere: found.y,
+        };
+        let ray = ray_1;
+        pixels[place] = launch.pixel(shading, &ray, hit, spheres, material_ids, materials, held_1);
+    }
+    let place = place_of(pixels, launch, pixel_2);
+    if place < pixels.len() {
+        let hit = Hit {
+            t: t_max.z,
+            sphere: found.z,
+        };
+        let ray = ray_2;
+        pixels[place] = launch.pixel(shading, &ray, hit, spheres, material_ids, materials, held_2);
+    }
+    let place = place_of(pixels, launch, pixel_3);
+    if place < pixels.len() {
+        let hit = Hit {
+            t: t_max.w,
+            sphere: found.w,
+        };
+        let ray = ray_3;
+        pixels[place] = launch.pixel(shading, &ray, hit, spheres, material_ids, materials, held_3);
+    }
+}
+
+/// Where a pixel of a launch is; the slice's length for one beyond the tile, which is traced for nothing because its
+/// thread must meet the others' barriers.
+#[inline]
+fn place_of(pixels: &[Pixel], launch: &Launch, pixel: UVec2) -> usize {
+    let is_inside = (pixel.x < launch.tile_size.x) & (pixel.y < launch.tile_size.y);
+    if is_inside {
+        (pixel.y * launch.tile_size.x + pixel.x) as usize
+    } else {
+        pixels.len()
+    }
+}
+
+/// What a pixel of a launch holds.
+#[inline]
+fn pixel_of(pixels: &[Pixel], launch: &Launch, pixel: UVec2) -> Pixel {
+    let place = place_of(pixels, launch, pixel);
+    let mut held = Pixel::default();
+    if place < pixels.len() {
+        held = pixels[place];
+    }
+    held
 }
 
 /// Adds samples to the pixels of a tile, by the effects that the pipeline holds.

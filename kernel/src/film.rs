@@ -11,6 +11,7 @@ use crate::hit::Hit;
 use crate::integrate::luminance;
 use crate::material::{Material, material_of};
 use crate::nearest::nearest_hit_in;
+use crate::ray::Ray;
 use crate::shading::shade;
 use crate::sky::Sky;
 use crate::sphere::Sphere;
@@ -117,29 +118,69 @@ pub fn render_pixel(
     pixel: UVec2,
     previous: Pixel,
 ) -> Pixel {
-    let mut ray = launch
-        .camera
-        .pixel_ray(launch.tile_origin + pixel, launch.image_size);
-    let mut result = Pixel::new(launch.background, Hit::NONE_T);
-    if launch.first_of_tile == 0 {
-        result = previous;
-        ray.t_max = previous.depth();
-    }
+    let ray = launch.ray(pixel, previous);
     let hit = if has_tree == 1 {
         nearest_hit_in_tree(rung, &ray, nodes, spheres)
     } else {
         let (first, count) = (launch.first_sphere, launch.sphere_count);
         nearest_hit_in(rung, &ray, spheres, first, count)
     };
-    if hit.is_some() {
-        let index = hit.sphere as usize;
-        // SAFETY: a hit names a sphere of the slice.
-        let sphere = unsafe { *spheres.index_unchecked(index) };
-        let material = material_of(index, material_ids, materials);
-        let surface = Surface::at(&ray, hit.t, sphere);
-        result = Pixel::new(shade(shading, &ray, hit.t, &surface, &material), hit.t);
+    launch.pixel(
+        shading,
+        &ray,
+        hit,
+        spheres,
+        material_ids,
+        materials,
+        previous,
+    )
+}
+
+impl Launch {
+    /// The ray through a pixel, which counts from the upper left of the tile and holds `previous`: not
+    /// farther than that.
+    #[inline]
+    #[must_use]
+    pub fn ray(&self, pixel: UVec2, previous: Pixel) -> Ray {
+        let at = self.tile_origin + pixel;
+        let mut ray = self.camera.pixel_ray(at, self.image_size);
+        if self.first_of_tile == 0 {
+            ray.t_max = previous.depth();
+        }
+        ray
     }
-    result
+
+    /// What a pixel that holds `previous` must hold after its ray has found `hit`.
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "these are the kernel's bindings, one each"
+    )]
+    #[inline]
+    #[must_use]
+    pub fn pixel(
+        &self,
+        shading: u32,
+        ray: &Ray,
+        hit: Hit,
+        spheres: &[Sphere],
+        material_ids: &[u32],
+        materials: &[Material],
+        previous: Pixel,
+    ) -> Pixel {
+        let mut result = Pixel::new(self.background, Hit::NONE_T);
+        if self.first_of_tile == 0 {
+            result = previous;
+        }
+        if hit.is_some() {
+            let index = hit.sphere as usize;
+            // SAFETY: a hit names a sphere of the slice.
+            let sphere = unsafe { *spheres.index_unchecked(index) };
+            let material = material_of(index, material_ids, materials);
+            let surface = Surface::at(ray, hit.t, sphere);
+            result = Pixel::new(shade(shading, ray, hit.t, &surface, &material), hit.t);
+        }
+        result
+    }
 }
 
 /// One launch of `trace_paths`: a tile of the image and a run of its samples, against all spheres.

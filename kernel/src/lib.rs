@@ -14,6 +14,7 @@
 //! | [`arithmetic`] | floats whose rounding errors are kept |
 //! | [`precision`] | the ladder: ways to intersect a ray with a sphere |
 //! | [`nearest`] | the nearest hit of a ray among a slice of spheres, and whether there is any |
+//! | [`candidates`] | which of many spheres a rung must be asked about |
 //! | [`tree`] | [`tree::Node`]: boxes around spheres, so that a ray looks at few |
 //! | [`surface`] | the point and the normal at a hit |
 //! | [`camera`] | [`Camera`]: from a pixel to a ray |
@@ -46,6 +47,7 @@
 pub mod arithmetic;
 pub mod camera;
 pub mod canary;
+pub mod candidates;
 pub mod effects;
 #[cfg(feature = "entry-points")]
 pub mod entry;

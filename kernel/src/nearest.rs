@@ -103,20 +103,27 @@ pub fn nearest_hit_in<S: Spheres + ?Sized>(
     let first = first.min(len);
     let end = first + count.min(len - first);
 
-    let mut ray = *ray;
-    let mut hit = Hit::NONE;
+    let mut t_max = ray.t_max;
+    let mut hit = Hit::NONE_SPHERE;
     let mut index = first;
     while index < end {
         // SAFETY: `end` is at most the number of spheres.
         let sphere = unsafe { spheres.sphere(index) };
-        let t = intersect(rung, sphere, &ray);
-        if t < ray.t_max {
-            ray.t_max = t;
-            hit = Hit { t, sphere: index };
+        let t = intersect(rung, sphere, &Ray { t_max, ..*ray });
+        if t < t_max {
+            t_max = t;
+            hit = index;
         }
         index += 1;
     }
-    hit
+    if hit == Hit::NONE_SPHERE {
+        Hit::NONE
+    } else {
+        Hit {
+            t: t_max,
+            sphere: hit,
+        }
+    }
 }
 
 /// Whether `ray` hits any of `spheres` on this rung: exactly where [`nearest_hit_in`] finds

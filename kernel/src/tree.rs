@@ -354,13 +354,16 @@ fn walk<const ANY: bool, S: Spheres + ?Sized>(
     spheres: &S,
     work: &mut Work,
 ) -> Hit {
-    let mut hit = Hit::NONE;
     if nodes.len() <= Node::ROOT as usize {
-        return hit;
+        return Hit::NONE;
     }
     let slabs = Slabs::of(rung, ray, nodes);
-    let mut ray = *ray;
-    let mut end = ray.t_max * slabs.unit;
+    // What changes on the way is kept apart from what does not: compilers for GPUs carry a whole struct from
+    // round to round if any of it changes.
+    let mut t_max = ray.t_max;
+    let mut end = t_max * slabs.unit;
+    let mut hit_t = Hit::NONE_T;
+    let mut hit_sphere = Hit::NONE_SPHERE;
 
     let mut stack = [MaybeUninit::<UVec2>::uninit(); Node::MAX_DEPTH];
     let mut height = 0;
@@ -404,18 +407,18 @@ fn walk<const ANY: bool, S: Spheres + ?Sized>(
             if index < end_index {
                 // SAFETY: `end_index` is at most the number of spheres.
                 let sphere = unsafe { spheres.sphere(index) };
-                let t = intersect(rung, sphere, &ray);
+                let t = intersect(rung, sphere, &Ray { t_max, ..*ray });
                 work.spheres += 1;
-                if t < ray.t_max {
+                if t < t_max {
                     if ANY {
                         return Hit { t, sphere: index };
                     }
-                    if (t < hit.t) | (index < hit.sphere) {
-                        hit = Hit { t, sphere: index };
+                    if (t < hit_t) | (index < hit_sphere) {
+                        (hit_t, hit_sphere) = (t, index);
                     }
                     // One as near is still of interest, if its index is lower.
-                    ray.t_max = next_up(t);
-                    end = ray.t_max * slabs.unit;
+                    t_max = next_up(t);
+                    end = t_max * slabs.unit;
                 }
                 index += 1;
             }
@@ -425,7 +428,10 @@ fn walk<const ANY: bool, S: Spheres + ?Sized>(
         group = slabs.in_order(met & inner) << 24 | inner;
         if met & inner == 0 {
             if height == 0 {
-                return hit;
+                return Hit {
+                    t: hit_t,
+                    sphere: hit_sphere,
+                };
             }
             height -= 1;
             // SAFETY: `height` is below the array's length.
