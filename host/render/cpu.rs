@@ -1,4 +1,4 @@
-//! The CPU path: the functions that the GPU's entry points call, over bands of rows.
+//! The CPU path: squares of camera rays, over bands of rows, and the kernel's functions for what they hit.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -6,19 +6,15 @@ use std::borrow::Cow;
 
 use glam::UVec2;
 use rayon::prelude::*;
-use spherule_kernel::film::render_pixel;
 use spherule_kernel::tree::Node;
 use spherule_kernel::{Launch, Pixel, Rung, Shading};
 
+use super::packet::{self, Packet, SIDE};
 use super::{Progress, Settings};
 use crate::error::Result;
 use crate::film;
 use crate::scene::World;
 use crate::scene::tree::{self, Acceleration};
-
-/// Rows in a band: small enough to share the work out evenly, large enough that handing it out
-/// costs nothing.
-const BAND_ROWS: usize = 4;
 
 /// A world, and the tree over it if one pays.
 #[derive(Clone, Debug)]
@@ -84,21 +80,17 @@ fn bands_on<const RUNG: u32>(
     const NORMALS: u32 = Shading::Normals.to_u32();
     const DEPTH: u32 = Shading::Depth.to_u32();
     const FLAT: u32 = Shading::Flat.to_u32();
-    let bands = match (shading, world.nodes.is_empty()) {
-        (Shading::Lit, true) => bands::<LIT, RUNG, 0>,
-        (Shading::Normals, true) => bands::<NORMALS, RUNG, 0>,
-        (Shading::Depth, true) => bands::<DEPTH, RUNG, 0>,
-        (Shading::Flat, true) => bands::<FLAT, RUNG, 0>,
-        (Shading::Lit, false) => bands::<LIT, RUNG, 1>,
-        (Shading::Normals, false) => bands::<NORMALS, RUNG, 1>,
-        (Shading::Depth, false) => bands::<DEPTH, RUNG, 1>,
-        (Shading::Flat, false) => bands::<FLAT, RUNG, 1>,
+    let bands = match shading {
+        Shading::Lit => bands::<LIT, RUNG>,
+        Shading::Normals => bands::<NORMALS, RUNG>,
+        Shading::Depth => bands::<DEPTH, RUNG>,
+        Shading::Flat => bands::<FLAT, RUNG>,
     };
     bands(launch, world, progress, pixels);
 }
 
-/// Compiled once for each shading mode and rung, with a tree and without, as the GPU's pipeline is.
-fn bands<const SHADING: u32, const RUNG: u32, const HAS_TREE: u32>(
+/// Compiled once for each shading mode and rung, as the GPU's pipeline is.
+fn bands<const SHADING: u32, const RUNG: u32>(
     launch: &Launch,
     world: &Prepared<'_>,
     progress: Progress<'_>,
@@ -106,28 +98,30 @@ fn bands<const SHADING: u32, const RUNG: u32, const HAS_TREE: u32>(
 ) {
     let width = launch.tile_size.x as usize;
     let height = launch.tile_size.y as usize;
+    let Prepared { world, nodes } = world;
     let rows_done = AtomicUsize::new(0);
     pixels
-        .par_chunks_mut(width * BAND_ROWS)
+        .par_chunks_mut(width * SIDE)
         .enumerate()
         .for_each(|(band, pixels)| {
-            for (index, pixel) in pixels.iter_mut().enumerate() {
-                let at = UVec2::new(
-                    (index % width) as u32,
-                    (band * BAND_ROWS + index / width) as u32,
-                );
-                *pixel = render_pixel(
-                    SHADING,
-                    RUNG,
-                    HAS_TREE,
-                    launch,
-                    &world.nodes,
-                    &world.world.spheres,
-                    &world.world.material_ids,
-                    &world.world.materials,
-                    at,
-                    *pixel,
-                );
+            let mut packet = Packet::new();
+            for left in (0..width).step_by(SIDE) {
+                let corner = UVec2::new(left as u32, (band * SIDE) as u32);
+                packet::trace::<RUNG>(&mut packet, launch, corner, nodes, &world.spheres);
+                for (y, row) in pixels.chunks_mut(width).enumerate() {
+                    for (x, pixel) in row[left..].iter_mut().take(SIDE).enumerate() {
+                        let (ray, hit) = packet.hit(SIDE * y + x);
+                        *pixel = launch.pixel(
+                            SHADING,
+                            &ray,
+                            hit,
+                            &world.spheres,
+                            &world.material_ids,
+                            &world.materials,
+                            *pixel,
+                        );
+                    }
+                }
             }
             let rows = pixels.len() / width;
             let done = rows_done.fetch_add(rows, Ordering::Relaxed) + rows;

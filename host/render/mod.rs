@@ -2,7 +2,8 @@
 //!
 //! | module | holds |
 //! | --- | --- |
-//! | [`cpu`] | the kernel's functions over bands of rows, on every thread |
+//! | [`cpu`] | on every thread of this machine |
+//! | [`packet`] | camera rays on the CPU, a square of pixels at once |
 //! | [`gpu`] | the kernel's entry point over tiles, within a device's limits |
 //! | [`paths`] | light paths, for scenes that call for effects |
 //! | [`cost`] | the time of a frame by pipelines of more or fewer effects |
@@ -13,6 +14,7 @@ pub mod cost;
 pub mod cpu;
 pub mod gpu;
 pub mod pace;
+pub mod packet;
 pub mod paths;
 mod tiles;
 

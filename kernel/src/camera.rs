@@ -67,12 +67,19 @@ impl Camera {
     #[inline]
     #[must_use]
     pub fn pixel_ray(&self, pixel: UVec2, size: UVec2) -> Ray {
+        self.ray(Self::film(pixel, size))
+    }
+
+    /// Where the centre of `pixel` is, as [`Camera::ray`] counts it.
+    #[inline]
+    #[must_use]
+    pub fn film(pixel: UVec2, size: UVec2) -> Vec2 {
         // Written with integers up to the one division, so that the centre of an odd-sized image
         // is exactly (0, 0) and opposite pixels are exact mirror images. Below 2²³ pixels a side
         // the integers are exact in f32.
         let x = (2 * pixel.x + 1) as f32 - size.x as f32;
         let y = size.y as f32 - (2 * pixel.y + 1) as f32;
-        self.ray(Vec2::new(x / size.x as f32, y / size.y as f32))
+        Vec2::new(x / size.x as f32, y / size.y as f32)
     }
 }
 

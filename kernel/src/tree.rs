@@ -118,17 +118,20 @@ impl Extent {
 
     /// How much wider boxes must be for this rung, in scene units, around a ray from `origin`.
     #[inline]
-    fn widening(&self, rung: u32, origin: Vec3) -> f32 {
+    #[must_use]
+    pub fn widening(&self, rung: u32, origin: Vec3) -> f32 {
         let far = (self.low - origin).abs().max((self.high - origin).abs());
-        // At least the distance to the farthest corner.
-        let distance = far.x + far.y + far.z;
         if rung == Rung::Robust.to_u32() {
+            // At least the distance to the farthest corner.
+            let distance = far.x + far.y + far.z;
             distance * (32.0 * U)
-        } else {
+        } else if rung == Rung::Textbook.to_u32() {
             let r = self.smallest_radius;
             let squared = far.dot(far) * (24.0 * U);
             // √(r² + e) − r, without cancellation.
             squared / ((r * r + squared).sqrt() + r).max(f32::MIN_POSITIVE)
+        } else {
+            0.0
         }
     }
 }

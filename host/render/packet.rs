@@ -1,0 +1,533 @@
+//! Camera rays on the CPU, a square of pixels at once.
+//!
+//! The rays of a square share their origin. Four planes through the eye and the sides of the square
+//! bound them all, so that boxes are tested once for 64 rays; the eight boxes of a node are tested side by side.
+//! Spheres that are left are tested against 16 rays side by side by [`Shared`], of few operations, and
+//! only what may be a hit is asked about on its rung: on [`Rung::Robust`] 16 rays side by side again, with the
+//! very operations of the kernel, in their order.
+//!
+//! Loops over arrays become vector instructions; `multiversion` compiles them for several
+//! instruction sets and chooses one when the program runs.
+
+use glam::{DVec3, UVec2, Vec3};
+use multiversion::multiversion;
+use spherule_kernel::candidates::Shared;
+use spherule_kernel::precision::intersect;
+use spherule_kernel::tree::{Extent, Node};
+use spherule_kernel::{Camera, Hit, Launch, Ray, Rung, Sphere};
+
+/// Rays side by side.
+const LANES: usize = 16;
+/// Pixels of a square's side.
+pub const SIDE: usize = 8;
+const RAYS: usize = SIDE * SIDE;
+const GROUPS: usize = RAYS / LANES;
+const WIDTH: usize = Node::WIDTH;
+/// 16u, u = 2⁻²⁴: what a box test may be off by for its terms, twice over.
+const SLACK: f32 = 16.0 / (1 << 24) as f32;
+
+/// Values of 16 rays.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
+struct Lanes([f32; LANES]);
+
+/// Rays of one origin, and what they have found.
+#[derive(Clone, Debug)]
+pub struct Packet {
+    origin: Vec3,
+    t_min: f32,
+    x: [Lanes; GROUPS],
+    y: [Lanes; GROUPS],
+    z: [Lanes; GROUPS],
+    /// The direction's squared length, and one over it.
+    a: [Lanes; GROUPS],
+    inverse: [Lanes; GROUPS],
+    /// The nearest hit so far, or the end of the ray; and its sphere.
+    t: [Lanes; GROUPS],
+    sphere: [[u32; LANES]; GROUPS],
+    /// The largest t of each group.
+    end: [f32; GROUPS],
+    /// How far a hit of the rung may be from its sphere.
+    widening: f32,
+    frustum: Frustum,
+}
+
+/// What bounds the rays: inward normals of four planes through the origin, and the direction along which
+/// their parameters are depths.
+#[derive(Clone, Debug)]
+struct Frustum {
+    planes: [Vec3; 4],
+    forward: Vec3,
+}
+
+/// A box on the way, or spheres in one.
+#[derive(Clone, Copy)]
+struct Entry {
+    depth: f32,
+    /// A node, or the first of `count` spheres.
+    first: u32,
+    count: u32,
+}
+
+impl Default for Packet {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Packet {
+    /// No rays yet.
+    #[must_use]
+    pub fn new() -> Self {
+        let none = [Lanes([0.0; LANES]); GROUPS];
+        Self {
+            origin: Vec3::ZERO,
+            t_min: 0.0,
+            x: none,
+            y: none,
+            z: none,
+            a: none,
+            inverse: none,
+            t: none,
+            sphere: [[Hit::NONE_SPHERE; LANES]; GROUPS],
+            end: [0.0; GROUPS],
+            widening: 0.0,
+            frustum: Frustum {
+                planes: [Vec3::ZERO; 4],
+                forward: Vec3::ZERO,
+            },
+        }
+    }
+
+    /// Takes the rays of the square whose upper left pixel is `corner`, counted from that of the tile.
+    /// Pixels beyond the tile's end are repeated ones.
+    #[inline(always)]
+    fn aim(&mut self, launch: &Launch, corner: UVec2) {
+        let camera = &launch.camera;
+        let last = launch.tile_size - UVec2::ONE;
+        let film = |x: u32, y: u32| {
+            let pixel = launch.tile_origin + (corner + UVec2::new(x, y)).min(last);
+            Camera::film(pixel, launch.image_size)
+        };
+        let first = camera.ray(film(0, 0));
+        (self.origin, self.t_min) = (first.origin, first.t_min);
+        self.t = [Lanes([first.t_max; LANES]); GROUPS];
+        self.sphere = [[Hit::NONE_SPHERE; LANES]; GROUPS];
+        self.end = [first.t_max; GROUPS];
+        let columns: [f32; SIDE] = std::array::from_fn(|x| film(x as u32, 0).x);
+        let rows: [f32; SIDE] = std::array::from_fn(|y| film(0, y as u32).y);
+        let (forward, right, up) = (camera.forward, camera.right, camera.up);
+        for group in 0..GROUPS {
+            // A group is four by four pixels.
+            let (left, top) = (group % 2 * 4, group / 2 * 4);
+            let across = lanes(|i| columns[left + i % 4]);
+            let upwards = lanes(|i| rows[top + i / 4]);
+            // The sums of Camera::ray, in its order.
+            let x = lanes(|i| forward.x + right.x * across[i] + up.x * upwards[i]);
+            let y = lanes(|i| forward.y + right.y * across[i] + up.y * upwards[i]);
+            let z = lanes(|i| forward.z + right.z * across[i] + up.z * upwards[i]);
+            let a = lanes(|i| x[i] * x[i] + y[i] * y[i] + z[i] * z[i]);
+            self.inverse[group] = Lanes(lanes(|i| 1.0 / a[i]));
+            (self.x[group], self.y[group], self.z[group]) = (Lanes(x), Lanes(y), Lanes(z));
+            self.a[group] = Lanes(a);
+        }
+        let side = SIDE as u32 - 1;
+        let corners = [(0, 0), (side, 0), (side, side), (0, side)]
+            .map(|(x, y)| camera.ray(film(x, y)).direction.as_dvec3());
+        let middle = corners.iter().sum::<DVec3>();
+        self.frustum = Frustum {
+            planes: [0, 1, 2, 3].map(|index| {
+                let normal = corners[index].cross(corners[(index + 1) % 4]);
+                // A square of one column has no such plane, and every box is inside of it.
+                let normal = normal.normalize_or_zero();
+                let side = if normal.dot(middle) < 0.0 {
+                    -normal
+                } else {
+                    normal
+                };
+                side.as_vec3()
+            }),
+            forward,
+        };
+    }
+
+    /// The ray of a pixel, counted row by row, and what it has found.
+    #[must_use]
+    pub fn hit(&self, index: usize) -> (Ray, Hit) {
+        let (group, lane) = place(index);
+        let direction = Vec3::new(
+            self.x[group].0[lane],
+            self.y[group].0[lane],
+            self.z[group].0[lane],
+        );
+        let ray = Ray::within(self.origin, direction, self.t_min, Hit::NONE_T);
+        let sphere = self.sphere[group][lane];
+        let t = if sphere == Hit::NONE_SPHERE {
+            Hit::NONE_T
+        } else {
+            self.t[group].0[lane]
+        };
+        (ray, Hit { t, sphere })
+    }
+
+    /// The largest end of all.
+    #[inline(always)]
+    fn end(&self) -> f32 {
+        self.end.iter().copied().fold(f32::MIN, f32::max)
+    }
+
+    /// Tests spheres, the first of which has the index `first`.
+    #[inline(always)]
+    fn test<const RUNG: u32>(&mut self, spheres: &[Sphere], first: u32) {
+        for (index, sphere) in spheres.iter().enumerate() {
+            let shared = Shared::of(*sphere, self.origin).to_vec4();
+            let o = shared.truncate();
+            let radius = sphere.radius().abs();
+            let off = (o.abs().element_sum() + radius) * SLACK + self.widening;
+            let nearest = o.dot(self.frustum.forward) - radius - off;
+            for group in 0..GROUPS {
+                if nearest > self.end[group] {
+                    continue;
+                }
+                let mut discriminant = Lanes([0.0; LANES]);
+                for lane in 0..LANES {
+                    let b = shared.x * self.x[group].0[lane]
+                        + shared.y * self.y[group].0[lane]
+                        + shared.z * self.z[group].0[lane];
+                    discriminant.0[lane] = b * b - self.a[group].0[lane] * shared.w;
+                }
+                // A number that is none is asked about, too.
+                let mut may_hit = false;
+                for value in discriminant.0 {
+                    may_hit |= !(value < 0.0);
+                }
+                if may_hit {
+                    let index = first + index as u32;
+                    if RUNG == Rung::Robust.to_u32() {
+                        self.test_robust(group, *sphere, index);
+                    } else {
+                        self.test_each::<RUNG>(group, *sphere, index, &discriminant);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Asks the rung about each ray that may meet the sphere.
+    #[inline(always)]
+    fn test_each<const RUNG: u32>(
+        &mut self,
+        group: usize,
+        sphere: Sphere,
+        index: u32,
+        discriminant: &Lanes,
+    ) {
+        for lane in 0..LANES {
+            if discriminant.0[lane] < 0.0 {
+                continue;
+            }
+            let best = self.t[group].0[lane];
+            let direction = Vec3::new(
+                self.x[group].0[lane],
+                self.y[group].0[lane],
+                self.z[group].0[lane],
+            );
+            // As near is of interest, too, if the index is lower.
+            let t_max = if best < Hit::NONE_T {
+                best.next_up()
+            } else {
+                best
+            };
+            let ray = Ray::within(self.origin, direction, self.t_min, t_max);
+            let t = intersect(RUNG, sphere, &ray);
+            if t < t_max && (t < best || index < self.sphere[group][lane]) {
+                self.t[group].0[lane] = t;
+                self.sphere[group][lane] = index;
+            }
+        }
+        self.end[group] = largest(&self.t[group].0);
+    }
+
+    /// The kernel's robust intersection for 16 rays.
+    #[inline(always)]
+    fn test_robust(&mut self, group: usize, sphere: Sphere, index: u32) {
+        let o = self.origin - sphere.center();
+        let rr = sphere.radius() * sphere.radius();
+        let c = o.dot(o) - rr;
+        let (x, y, z) = (&self.x[group].0, &self.y[group].0, &self.z[group].0);
+        let (a, inverse) = (&self.a[group].0, &self.inverse[group].0);
+        let (best, sphere) = (self.t[group].0, self.sphere[group]);
+        // Step by step, each for all lanes: so each becomes one instruction.
+        let b = lanes(|i| o.x * x[i] + o.y * y[i] + o.z * z[i]);
+        let along = lanes(|i| b[i] * inverse[i]);
+        let foot_x = lanes(|i| o.x - x[i] * along[i]);
+        let foot_y = lanes(|i| o.y - y[i] * along[i]);
+        let foot_z = lanes(|i| o.z - z[i] * along[i]);
+        let squared =
+            lanes(|i| foot_x[i] * foot_x[i] + foot_y[i] * foot_y[i] + foot_z[i] * foot_z[i]);
+        let discriminant = lanes(|i| rr - squared[i]);
+        let positive = lanes(|i| {
+            if discriminant[i] > 0.0 {
+                discriminant[i]
+            } else {
+                0.0
+            }
+        });
+        let root = lanes(|i| (a[i] * positive[i]).sqrt());
+        let size = lanes(|i| b[i].abs() + root[i]);
+        let outer = lanes(|i| size[i] / a[i]);
+        let quotient = lanes(|i| c / size[i]);
+        let inner = lanes(|i| if size[i] > 0.0 { quotient[i] } else { 0.0 });
+        let near = lanes(|i| if b[i] < 0.0 { inner[i] } else { -outer[i] });
+        let far = lanes(|i| if b[i] < 0.0 { outer[i] } else { -inner[i] });
+        let t_min = self.t_min;
+        let within = |t: f32, best: f32| (t >= t_min) & (t <= best) & (t < Hit::NONE_T);
+        let t = lanes(|i| {
+            if within(near[i], best[i]) {
+                near[i]
+            } else {
+                far[i]
+            }
+        });
+        let meets = |i: usize| (discriminant[i] >= 0.0) & (size[i] <= f32::MAX);
+        let nearer = |i: usize| (t[i] < best[i]) | (index < sphere[i]);
+        let is_new = |i: usize| meets(i) & within(t[i], best[i]) & nearer(i);
+        let nearest = lanes(|i| if is_new(i) { t[i] } else { best[i] });
+        for lane in 0..LANES {
+            self.sphere[group][lane] = if is_new(lane) { index } else { sphere[lane] };
+        }
+        self.t[group] = Lanes(nearest);
+        self.end[group] = largest(&nearest);
+    }
+}
+
+/// One value for each lane.
+#[inline(always)]
+fn lanes(of: impl Fn(usize) -> f32) -> [f32; LANES] {
+    let mut values = [0.0; LANES];
+    for (lane, value) in values.iter_mut().enumerate() {
+        *value = of(lane);
+    }
+    values
+}
+
+/// The largest value, none of which is a NaN.
+#[inline(always)]
+fn largest(values: &[f32; LANES]) -> f32 {
+    let mut largest = *values;
+    let mut half = LANES / 2;
+    while half > 0 {
+        for lane in 0..half {
+            let other = largest[lane + half];
+            if other > largest[lane] {
+                largest[lane] = other;
+            }
+        }
+        half /= 2;
+    }
+    largest[0]
+}
+
+/// Pixels of a group are next to each other: the group and the lane of a pixel counted row by row.
+const fn place(index: usize) -> (usize, usize) {
+    let (x, y) = (index % SIDE, index / SIDE);
+    (y / 4 * 2 + x / 4, y % 4 * 4 + x % 4)
+}
+
+/// Finds the nearest hits of the rays through the square of pixels at `corner`, counted from the tile's
+/// upper left, on the rung `RUNG`: in a tree or, without nodes, among all spheres.
+pub fn trace<const RUNG: u32>(
+    packet: &mut Packet,
+    launch: &Launch,
+    corner: UVec2,
+    nodes: &[Node],
+    spheres: &[Sphere],
+) {
+    const TEXTBOOK: u32 = Rung::Textbook.to_u32();
+    const ROBUST: u32 = Rung::Robust.to_u32();
+    const COMPENSATED: u32 = Rung::Compensated.to_u32();
+    const DOUBLE: u32 = Rung::Double.to_u32();
+    let trace = match RUNG {
+        TEXTBOOK => trace_textbook,
+        ROBUST => trace_robust,
+        COMPENSATED => trace_compensated,
+        DOUBLE => trace_double,
+        _ => trace_certified,
+    };
+    trace(packet, launch, corner, nodes, spheres);
+}
+
+macro_rules! on_rung {
+    ($name:ident, $rung:ident) => {
+        #[multiversion(targets(
+            "x86_64+avx512f+avx512vl+avx512bw+avx512dq+avx2+fma",
+            "x86_64+avx2+fma",
+            "aarch64+neon"
+        ))]
+        fn $name(
+            packet: &mut Packet,
+            launch: &Launch,
+            corner: UVec2,
+            nodes: &[Node],
+            spheres: &[Sphere],
+        ) {
+            packet.aim(launch, corner);
+            trace_on::<{ Rung::$rung.to_u32() }>(packet, nodes, spheres);
+        }
+    };
+}
+
+on_rung!(trace_textbook, Textbook);
+on_rung!(trace_robust, Robust);
+on_rung!(trace_compensated, Compensated);
+on_rung!(trace_double, Double);
+on_rung!(trace_certified, Certified);
+
+#[inline(always)]
+fn trace_on<const RUNG: u32>(packet: &mut Packet, nodes: &[Node], spheres: &[Sphere]) {
+    if nodes.is_empty() {
+        // Of hits of a rung without a bound nothing is known; none is passed by for being far away.
+        packet.widening = f32::MAX;
+        packet.test::<RUNG>(spheres, 0);
+        return;
+    }
+    let widening = Extent::of_node(&nodes[0]).widening(RUNG, packet.origin);
+    packet.widening = widening;
+    let mut stack = [Entry {
+        depth: 0.0,
+        first: 0,
+        count: 0,
+    }; Node::MAX_DEPTH * WIDTH];
+    stack[0].first = Node::ROOT;
+    let mut height = 1;
+    while height > 0 {
+        height -= 1;
+        let entry = stack[height];
+        if entry.depth > packet.end() {
+            continue;
+        }
+        let first = entry.first as usize;
+        if entry.count > 0 {
+            let spheres = &spheres[first..first + entry.count as usize];
+            packet.test::<RUNG>(spheres, entry.first);
+            continue;
+        }
+        let node = &nodes[first];
+        let boxes = Boxes::of(node, packet.origin);
+        let (mut met, depths) = boxes.meets(&packet.frustum, widening, packet.end());
+        let inner = node.grid.w >> 24;
+        let bottom = height;
+        while met != 0 {
+            let child = met.trailing_zeros();
+            met &= met - 1;
+            let before = (1 << child) - 1;
+            let entry = if inner >> child & 1 == 1 {
+                Entry {
+                    depth: depths[child as usize],
+                    first: node.links.x + (inner & before).count_ones(),
+                    count: 0,
+                }
+            } else {
+                let counts = node.links.z;
+                let before = counts & ((1_u32 << (4 * child)) - 1);
+                Entry {
+                    depth: depths[child as usize],
+                    first: node.links.y + (0..8).map(|n| before >> (4 * n) & 15).sum::<u32>(),
+                    count: counts >> (4 * child) & 15,
+                }
+            };
+            // The nearest on top.
+            let mut at = height;
+            while at > bottom && stack[at - 1].depth < entry.depth {
+                stack[at] = stack[at - 1];
+                at -= 1;
+            }
+            stack[at] = entry;
+            height += 1;
+        }
+    }
+}
+
+/// The eight boxes of a node, as seen from an origin.
+struct Boxes {
+    low: [[f32; WIDTH]; 3],
+    high: [[f32; WIDTH]; 3],
+    /// How large the terms of a coordinate are.
+    size: Vec3,
+    /// Which of the eight there are.
+    are_there: u32,
+}
+
+impl Boxes {
+    #[inline(always)]
+    fn of(node: &Node, origin: Vec3) -> Self {
+        let bytes: &[u8; 80] = bytemuck::cast_ref(node);
+        let exponents = node.grid.w;
+        let step = [0, 8, 16].map(|shift| f32::from_bits((exponents >> shift & 0xff) << 23));
+        let corner = [node.grid.x, node.grid.y, node.grid.z].map(f32::from_bits);
+        let offset = Vec3::from_array(corner) - origin;
+        let mut boxes = Self {
+            low: [[0.0; WIDTH]; 3],
+            high: [[0.0; WIDTH]; 3],
+            size: offset.abs() + Vec3::from_array(step) * 256.0,
+            are_there: exponents >> 24,
+        };
+        for axis in 0..3 {
+            for child in 0..WIDTH {
+                let low = f32::from(bytes[32 + 8 * axis + child]);
+                let high = f32::from(bytes[56 + 8 * axis + child]);
+                boxes.low[axis][child] = low * step[axis] + offset[axis];
+                boxes.high[axis][child] = high * step[axis] + offset[axis];
+            }
+        }
+        for child in 0..WIDTH {
+            boxes.are_there |= u32::from(node.links.z >> (4 * child) & 15 != 0) << child;
+        }
+        boxes
+    }
+
+    /// Which boxes the frustum may meet before the depth `end`, a bit each, and how deep they begin.
+    #[inline(always)]
+    fn meets(&self, frustum: &Frustum, widening: f32, end: f32) -> (u32, [f32; WIDTH]) {
+        let off = self.size.element_sum() * SLACK + widening;
+        let slack = |normal: Vec3| normal.abs().element_sum() * off;
+        let mut worst = [0.0_f32; WIDTH];
+        for normal in frustum.planes {
+            let farthest = self.along(normal, true);
+            let slack = slack(normal);
+            for child in 0..WIDTH {
+                worst[child] = worst[child].min(farthest[child] + slack);
+            }
+        }
+        let slack = slack(frustum.forward);
+        let mut nearest = self.along(frustum.forward, false);
+        let farthest = self.along(frustum.forward, true);
+        let end = end + end.abs() * SLACK;
+        let mut met = 0;
+        for child in 0..WIDTH {
+            nearest[child] -= slack;
+            let is_met =
+                (worst[child] >= 0.0) & (farthest[child] + slack >= 0.0) & (nearest[child] <= end);
+            met |= u32::from(is_met) << child;
+        }
+        (met & self.are_there, nearest)
+    }
+
+    /// The largest, or the smallest, of each box along a direction.
+    #[inline(always)]
+    fn along(&self, direction: Vec3, largest: bool) -> [f32; WIDTH] {
+        let side = |axis: usize| {
+            if (direction[axis] > 0.0) == largest {
+                &self.high[axis]
+            } else {
+                &self.low[axis]
+            }
+        };
+        let (x, y, z) = (side(0), side(1), side(2));
+        let mut sums = [0.0; WIDTH];
+        for child in 0..WIDTH {
+            sums[child] = x[child] * direction.x + y[child] * direction.y + z[child] * direction.z;
+        }
+        sums
+    }
+}
