@@ -5,9 +5,11 @@
 //! | [`scenes`] | the worlds |
 //! | [`rays`] | the rays: primary, shadow, ambient, incoherent |
 //! | [`measure`] | their times |
+//! | [`verify`] | whether the tree loses a hit |
 //! | [`export`] | worlds, rays and hits as files, for other programs |
 
 pub mod export;
 pub mod measure;
 pub mod rays;
 pub mod scenes;
+pub mod verify;

@@ -225,6 +225,10 @@ pub(super) struct BenchArguments {
     #[arg(long, value_name = "FILE.json")]
     pub(super) json: Option<PathBuf>,
 
+    /// Measure nothing: trace rays of every kind with the tree and against every sphere, on every rung, and compare
+    #[arg(long, conflicts_with_all = ["json", "export", "precision", "acceleration"])]
+    pub(super) verify: bool,
+
     /// Measure nothing: write the scene's spheres, rays and hits as files into this folder, for other programs
     #[arg(
         long,

@@ -10,9 +10,12 @@ use crate::bench::export::export;
 use crate::bench::measure::{Measured, Plan, Speed, measure};
 use crate::bench::rays::RaySets;
 use crate::bench::scenes::{self, BenchScene};
+use crate::bench::verify::{Verified, verify};
 use crate::device::Device;
 use crate::error::{Error, Result};
+use crate::scene::tree::Acceleration;
 use crate::trace::CpuTracer;
+use spherule_kernel::Rung;
 
 /// What `--json` writes.
 #[derive(Serialize)]
@@ -48,6 +51,9 @@ pub(super) fn run(arguments: &BenchArguments) -> Result<ExitCode> {
     } else {
         arguments.scene.clone()
     };
+    if arguments.verify {
+        return compare(arguments, &device, &names);
+    }
     print(&head(size.width, size.height, plan))?;
     let mut all = Vec::new();
     for name in &names {
@@ -73,6 +79,53 @@ pub(super) fn run(arguments: &BenchArguments) -> Result<ExitCode> {
         }
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// The tree's answers against those of testing every sphere.
+fn compare(arguments: &BenchArguments, device: &Device, names: &[String]) -> Result<ExitCode> {
+    let size = arguments.size;
+    let mut all = Verified::default();
+    print(&format!(
+        "{:<12} {:<12} {:>10} {:>10} {:>10}\n",
+        "scene", "precision", "rays", "differing", "ties"
+    ))?;
+    for name in names {
+        let (scene, reach) = scenes::load(name, size.width, size.height)?;
+        let tracer = CpuTracer::new(&scene.world.spheres, Acceleration::Auto);
+        let sets = RaySets::of(&scene, &tracer, reach)?;
+        for rung in Rung::ALL {
+            if rung == Rung::Double && !device.has_f64() {
+                continue;
+            }
+            let verified = verify(device, &scene, &sets, rung)?;
+            print(&format!(
+                "{name:<12} {:<12} {:>10} {:>10} {:>10}\n",
+                rung.name(),
+                verified.rays,
+                verified.differing,
+                verified.ties
+            ))?;
+            all.rays += verified.rays;
+            all.differing += verified.differing;
+            all.ties += verified.ties;
+        }
+    }
+    let passed = all.differing == 0;
+    print(&format!(
+        "{}: {} rays, {} differ\n",
+        if passed {
+            "no hit is lost"
+        } else {
+            "HITS DIFFER"
+        },
+        all.rays,
+        all.differing
+    ))?;
+    Ok(if passed {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::FAILURE
+    })
 }
 
 fn head(width: u32, height: u32, plan: Plan) -> String {

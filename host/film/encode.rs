@@ -1,5 +1,7 @@
 //! From linear colours and measurements to 8-bit colours.
 
+use std::sync::LazyLock;
+
 use glam::Vec3;
 use rayon::prelude::*;
 use spherule_kernel::integrate::luminance;
@@ -25,10 +27,7 @@ impl Image {
             .zip(self.pixels.par_chunks(1 << 12))
             .for_each(|(bytes, pixels)| {
                 for (bytes, pixel) in bytes.chunks_exact_mut(3).zip(pixels) {
-                    for (byte, value) in bytes.iter_mut().zip(encoder.encode(pixel)) {
-                        // Rounds to nearest; a NaN becomes 0.
-                        *byte = (value * 255.0 + 0.5) as u8;
-                    }
+                    bytes.copy_from_slice(&encoder.encode_bytes(pixel));
                 }
             });
         bytes
@@ -104,6 +103,19 @@ impl Encoder {
         }
     }
 
+    /// The pixel's channels as bytes, rounded to nearest; a NaN becomes 0.
+    fn encode_bytes(&self, pixel: &Pixel) -> [u8; 3] {
+        match self.shading {
+            Shading::Lit => develop(self.develop, pixel.color())
+                .to_array()
+                .map(srgb_byte),
+            shading if pixel.is_hit() && shading.is_data() => {
+                self.encode(pixel).map(|value| (value * 255.0 + 0.5) as u8)
+            }
+            _ => pixel.color().to_array().map(srgb_byte),
+        }
+    }
+
     /// The pixel's channels, each between 0 and 1.
     pub(super) fn encode(&self, pixel: &Pixel) -> [f32; 3] {
         let color = pixel.color().to_array();
@@ -151,6 +163,58 @@ pub fn srgb(linear: f32) -> f32 {
     }
 }
 
+/// [`srgb`] as a byte, rounded to nearest, by a table: the power is what takes longest about a small
+/// scene's image.
+fn srgb_byte(linear: f32) -> u8 {
+    static CURVE: LazyLock<Curve> = LazyLock::new(Curve::new);
+    CURVE.byte(linear)
+}
+
+/// For each byte the smallest number that has it, and for numbers of the same leading bits the byte of the
+/// smallest among them.
+struct Curve {
+    smallest: [f32; 257],
+    first: Vec<u8>,
+}
+
+impl Curve {
+    /// Bits that are not looked at.
+    const DROPPED: u32 = 15;
+
+    fn new() -> Self {
+        let of = |linear: f32| (srgb(linear) * 255.0 + 0.5) as u8;
+        let mut smallest = [f32::INFINITY; 257];
+        smallest[0] = 0.0;
+        for byte in 1..=255 {
+            // Positive floats are in the order of their bits.
+            let (mut below, mut at) = (0, 1_f32.to_bits());
+            while at - below > 1 {
+                let middle = below + (at - below) / 2;
+                if of(f32::from_bits(middle)) >= byte {
+                    at = middle;
+                } else {
+                    below = middle;
+                }
+            }
+            smallest[usize::from(byte)] = f32::from_bits(at);
+        }
+        let first = (0..=1_f32.to_bits() >> Self::DROPPED)
+            .map(|bits| of(f32::from_bits(bits << Self::DROPPED)))
+            .collect();
+        Self { smallest, first }
+    }
+
+    fn byte(&self, linear: f32) -> u8 {
+        // A NaN is not above zero.
+        let linear = if linear > 0.0 { linear.min(1.0) } else { 0.0 };
+        let mut byte = self.first[(linear.to_bits() >> Self::DROPPED) as usize];
+        while linear >= self.smallest[usize::from(byte) + 1] {
+            byte += 1;
+        }
+        byte
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -171,6 +235,22 @@ mod tests {
             [188, 188, 188]
         );
         assert_eq!(one_pixel(Shading::Flat, Vec3::X, 1.0), [255, 0, 0]);
+    }
+
+    #[test]
+    fn the_table_is_the_curve() {
+        let mut linear = 0.0_f32;
+        while linear < 1.1 {
+            assert_eq!(
+                srgb_byte(linear),
+                (srgb(linear) * 255.0 + 0.5) as u8,
+                "{linear}"
+            );
+            linear = (linear * 1.000_01).max(linear + 1e-6);
+        }
+        for odd in [f32::NAN, -1.0, f32::INFINITY, f32::MIN_POSITIVE, -0.0] {
+            assert_eq!(srgb_byte(odd), (srgb(odd) * 255.0 + 0.5) as u8, "{odd}");
+        }
     }
 
     #[test]

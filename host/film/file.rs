@@ -10,6 +10,9 @@ use image::{ExtendedColorType, ImageEncoder};
 use super::Image;
 use crate::error::{Error, Result};
 
+/// How rows are prepared for compression: to choose anew for each row takes as long as to compress them.
+const FILTER: FilterType = FilterType::Up;
+
 /// A kind of image file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
@@ -118,23 +121,20 @@ impl Image {
     ) -> image::ImageResult<()> {
         match format {
             Format::Png if self.alpha().is_some() => {
-                PngEncoder::new_with_quality(writer, CompressionType::Fast, FilterType::Adaptive)
-                    .write_image(
-                        &self.to_rgba8(),
-                        self.width,
-                        self.height,
-                        ExtendedColorType::Rgba8,
-                    )
+                PngEncoder::new_with_quality(writer, CompressionType::Fast, FILTER).write_image(
+                    &self.to_rgba8(),
+                    self.width,
+                    self.height,
+                    ExtendedColorType::Rgba8,
+                )
             }
-            Format::Png => {
-                PngEncoder::new_with_quality(writer, CompressionType::Fast, FilterType::Adaptive)
-                    .write_image(
-                        &self.to_rgb8(),
-                        self.width,
-                        self.height,
-                        ExtendedColorType::Rgb8,
-                    )
-            }
+            Format::Png => PngEncoder::new_with_quality(writer, CompressionType::Fast, FILTER)
+                .write_image(
+                    &self.to_rgb8(),
+                    self.width,
+                    self.height,
+                    ExtendedColorType::Rgb8,
+                ),
             // OpenEXR's colours are premultiplied, as ours.
             Format::Exr if let Some(alpha) = self.alpha() => {
                 let floats: Vec<f32> = self

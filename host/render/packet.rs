@@ -205,6 +205,8 @@ impl Packet {
                     let index = first + index as u32;
                     if RUNG == Rung::Robust.to_u32() {
                         self.test_robust(group, *sphere, index);
+                    } else if RUNG == Rung::Double.to_u32() {
+                        self.test_double(group, *sphere, index);
                     } else {
                         self.test_each::<RUNG>(group, *sphere, index, &discriminant);
                     }
@@ -256,7 +258,6 @@ impl Packet {
         let c = o.dot(o) - rr;
         let (x, y, z) = (&self.x[group].0, &self.y[group].0, &self.z[group].0);
         let (a, inverse) = (&self.a[group].0, &self.inverse[group].0);
-        let (best, sphere) = (self.t[group].0, self.sphere[group]);
         // Step by step, each for all lanes: so each becomes one instruction.
         let b = lanes(|i| o.x * x[i] + o.y * y[i] + o.z * z[i]);
         let along = lanes(|i| b[i] * inverse[i]);
@@ -280,6 +281,73 @@ impl Packet {
         let inner = lanes(|i| if size[i] > 0.0 { quotient[i] } else { 0.0 });
         let near = lanes(|i| if b[i] < 0.0 { inner[i] } else { -outer[i] });
         let far = lanes(|i| if b[i] < 0.0 { outer[i] } else { -inner[i] });
+        let meets = lanes(|i| {
+            let meets = (discriminant[i] >= 0.0) & (size[i] <= f32::MAX);
+            if meets { 1.0 } else { 0.0 }
+        });
+        self.take(group, index, &meets, &near, &far);
+    }
+
+    /// The kernel's intersection in f64 for 16 rays.
+    #[inline(always)]
+    fn test_double(&mut self, group: usize, sphere: Sphere, index: u32) {
+        let o = self.origin.as_dvec3() - sphere.center().as_dvec3();
+        let r = f64::from(sphere.radius());
+        let (x, y, z) = (&self.x[group].0, &self.y[group].0, &self.z[group].0);
+        let x = lanes(|i| f64::from(x[i]));
+        let y = lanes(|i| f64::from(y[i]));
+        let z = lanes(|i| f64::from(z[i]));
+        let a = lanes(|i| x[i] * x[i] + y[i] * y[i] + z[i] * z[i]);
+        let kx = lanes(|i| o.y * z[i] - o.z * y[i]);
+        let ky = lanes(|i| o.z * x[i] - o.x * z[i]);
+        let kz = lanes(|i| o.x * y[i] - o.y * x[i]);
+        let squared = lanes(|i| kx[i] * kx[i] + ky[i] * ky[i] + kz[i] * kz[i]);
+        let discriminant = lanes(|i| a[i] * (r * r) - squared[i]);
+        let b = lanes(|i| o.x * x[i] + o.y * y[i] + o.z * z[i]);
+        let c = o.x * o.x + o.y * o.y + o.z * o.z - r * r;
+        let rough = lanes(|i| discriminant[i].sqrt());
+        let newton =
+            lanes(|i| rough[i] + (discriminant[i] - rough[i] * rough[i]) / (rough[i] + rough[i]));
+        let root = lanes(|i| {
+            if discriminant[i] > 0.0 {
+                newton[i]
+            } else {
+                0.0
+            }
+        });
+        let size = lanes(|i| {
+            if b[i] >= 0.0 {
+                b[i] + root[i]
+            } else {
+                root[i] - b[i]
+            }
+        });
+        let rough = lanes(|i| size[i] / a[i]);
+        let outer = lanes(|i| (rough[i] + (size[i] - rough[i] * a[i]) / a[i]) as f32);
+        let rough = lanes(|i| c / size[i]);
+        let newton = lanes(|i| (rough[i] + (c - rough[i] * size[i]) / size[i]) as f32);
+        let inner = lanes(|i| if size[i] > 0.0 { newton[i] } else { 0.0 });
+        let near = lanes(|i| if b[i] >= 0.0 { -outer[i] } else { inner[i] });
+        let far = lanes(|i| if b[i] >= 0.0 { -inner[i] } else { outer[i] });
+        let meets = lanes(|i| {
+            let meets = (discriminant[i] >= 0.0) & (a[i] > 0.0);
+            if meets { 1.0 } else { 0.0 }
+        });
+        self.take(group, index, &meets, &near, &far);
+    }
+
+    /// Takes the smaller of two roots that is in the interval, where the line meets the sphere (1, else 0), and where
+    /// it is nearer than what was found, or as near and of lower index.
+    #[inline(always)]
+    fn take(
+        &mut self,
+        group: usize,
+        index: u32,
+        meets: &[f32; LANES],
+        near: &[f32; LANES],
+        far: &[f32; LANES],
+    ) {
+        let (best, sphere) = (self.t[group].0, self.sphere[group]);
         let t_min = self.t_min;
         let within = |t: f32, best: f32| (t >= t_min) & (t <= best) & (t < Hit::NONE_T);
         let t = lanes(|i| {
@@ -289,9 +357,8 @@ impl Packet {
                 far[i]
             }
         });
-        let meets = |i: usize| (discriminant[i] >= 0.0) & (size[i] <= f32::MAX);
         let nearer = |i: usize| (t[i] < best[i]) | (index < sphere[i]);
-        let is_new = |i: usize| meets(i) & within(t[i], best[i]) & nearer(i);
+        let is_new = |i: usize| (meets[i] > 0.0) & within(t[i], best[i]) & nearer(i);
         let nearest = lanes(|i| if is_new(i) { t[i] } else { best[i] });
         for lane in 0..LANES {
             self.sphere[group][lane] = if is_new(lane) { index } else { sphere[lane] };
@@ -303,8 +370,8 @@ impl Packet {
 
 /// One value for each lane.
 #[inline(always)]
-fn lanes(of: impl Fn(usize) -> f32) -> [f32; LANES] {
-    let mut values = [0.0; LANES];
+fn lanes<T: Copy + Default>(of: impl Fn(usize) -> T) -> [T; LANES] {
+    let mut values = [T::default(); LANES];
     for (lane, value) in values.iter_mut().enumerate() {
         *value = of(lane);
     }

@@ -1,0 +1,134 @@
+//! The tree, the squares of camera rays and the tiles of brute force answer as testing every sphere does.
+
+use spherule::bench::rays::{Kind, RaySets};
+use spherule::bench::scenes;
+use spherule::bench::verify::verify;
+use spherule::device::{Device, GpuOptions};
+use spherule::kernel::nearest::nearest_hit_in;
+use spherule::kernel::{Rung, Shading};
+use spherule::render::{QUIET, Settings, cpu, whole_image};
+use spherule::scene::tree::Acceleration;
+use spherule::trace::CpuTracer;
+
+mod common;
+use common::{all_adapters, gpus, open, skips};
+
+/// Rays of every kind, on every rung: the tree against every sphere.
+#[test]
+fn the_tree_loses_no_hit() {
+    for (name, rungs) in [
+        ("S46", &Rung::ALL[..]),
+        ("S500", &Rung::ALL),
+        ("R10k", &Rung::ALL),
+        ("X1M", &[Rung::Textbook, Rung::Robust]),
+    ] {
+        let (scene, reach) = scenes::load(name, 48, 36).expect("a scene");
+        let tracer = CpuTracer::new(&scene.world.spheres, Acceleration::Auto);
+        let sets = RaySets::of(&scene, &tracer, reach).expect("rays");
+        assert!(!sets.kind(Kind::Ambient).is_empty(), "{name}");
+        for rung in rungs.iter().copied() {
+            let verified = verify(&Device::Cpu, &scene, &sets, rung).expect("a comparison");
+            assert_eq!(
+                verified.differing,
+                0,
+                "{name} {}: {verified:?}",
+                rung.name()
+            );
+            assert!(verified.rays > 500, "{name}: {verified:?}");
+        }
+    }
+}
+
+/// The same on every adapter; on the rungs below compensated a driver may fuse and reorder in one kernel
+/// other than in the other, which a software adapter does not.
+#[test]
+fn the_tree_loses_no_hit_on_a_gpu() {
+    if skips("the_tree_loses_no_hit_on_a_gpu") {
+        return;
+    }
+    for adapter in all_adapters() {
+        let device = Device::Gpu(Box::new(open(adapter, GpuOptions::default())));
+        let (scene, reach) = scenes::load("S500", 32, 24).expect("a scene");
+        let tracer = CpuTracer::new(&scene.world.spheres, Acceleration::Auto);
+        let sets = RaySets::of(&scene, &tracer, reach).expect("rays");
+        for rung in Rung::ALL {
+            if rung == Rung::Double && !device.has_f64() {
+                continue;
+            }
+            let verified = verify(&device, &scene, &sets, rung).expect("a comparison");
+            assert_eq!(
+                verified.differing,
+                0,
+                "{} on {}",
+                rung.name(),
+                device.name()
+            );
+        }
+    }
+}
+
+/// Each pixel's depth is the nearest hit's t, with a tree and without, whatever part of a square is image.
+#[test]
+fn squares_of_rays_find_what_single_rays_find() {
+    for (name, width, height) in [
+        ("S2", 33, 17),
+        ("S46", 41, 23),
+        ("S500", 40, 30),
+        ("R10k", 37, 29),
+        ("R10k", 1, 9),
+    ] {
+        let (scene, _) = scenes::load(name, width, height).expect("a scene");
+        let launch = whole_image(&scene).expect("a launch");
+        for rung in Rung::ALL {
+            for acceleration in [Acceleration::Tree, Acceleration::BruteForce] {
+                let world = cpu::Prepared::new(&scene.world, acceleration);
+                let settings = Settings {
+                    acceleration,
+                    ..Settings::from((Shading::Flat, rung))
+                };
+                let pixels = cpu::render(&launch, &world, settings, QUIET).expect("an image");
+                let mut hits = 0;
+                for (index, pixel) in pixels.iter().enumerate() {
+                    let at = glam::UVec2::new(index as u32 % width, index as u32 / width);
+                    let ray = launch.camera.pixel_ray(at, launch.image_size);
+                    let spheres = &scene.world.spheres[..];
+                    let hit = nearest_hit_in(rung.to_u32(), &ray, spheres, 0, u32::MAX);
+                    assert_eq!(pixel.depth(), hit.t, "{name} {} {at}", rung.name());
+                    hits += usize::from(hit.is_some());
+                }
+                assert!(width == 1 || hits > 50, "{name}: {hits} hits tell little");
+            }
+        }
+    }
+}
+
+/// The tiles of a GPU's brute force against the squares of the CPU.
+#[test]
+fn tiles_find_what_the_cpu_finds() {
+    if skips("tiles_find_what_the_cpu_finds") {
+        return;
+    }
+    for gpu in gpus() {
+        // Neither side a multiple of a tile's, more spheres than a tile holds, and one tile that is not full.
+        let (scene, _) = scenes::load("S500", 45, 37).expect("a scene");
+        let launch = whole_image(&scene).expect("a launch");
+        for rung in [Rung::Robust, Rung::Certified] {
+            let settings = Settings {
+                acceleration: Acceleration::BruteForce,
+                ..Settings::from((Shading::Flat, rung))
+            };
+            let on_gpu =
+                spherule::render::gpu::Prepared::new(gpu, &scene.world, settings).expect("a world");
+            let (on_gpu, _) =
+                spherule::render::gpu::render(gpu, &launch, &on_gpu, QUIET).expect("an image");
+            let world = cpu::Prepared::new(&scene.world, Acceleration::BruteForce);
+            let on_cpu = cpu::render(&launch, &world, settings, QUIET).expect("an image");
+            let differing = on_gpu
+                .iter()
+                .zip(&on_cpu)
+                .filter(|(a, b)| (a.depth() - b.depth()).abs() > 1e-4 * b.depth())
+                .count();
+            assert!(differing <= 2, "{differing} pixels on {}", gpu.name());
+        }
+    }
+}
