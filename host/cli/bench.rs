@@ -54,12 +54,15 @@ pub(super) fn run(arguments: &BenchArguments) -> Result<ExitCode> {
     if arguments.verify {
         return compare(arguments, &device, &names);
     }
-    print(&head(size.width, size.height, plan))?;
+    // Numbers that a program reads stand alone.
+    let to_stdout = arguments.json.as_deref() == Some("-".as_ref());
+    let show = |text: &str| if to_stdout { Ok(()) } else { print(text) };
+    show(&head(size.width, size.height, plan))?;
     let mut all = Vec::new();
     for name in &names {
         let (scene, reach) = scenes::load(name, size.width, size.height)?;
         let measured = measure(&device, name, &scene, reach, plan)?;
-        print(&row(&measured))?;
+        show(&row(&measured))?;
         all.push(measured);
     }
     if let Some(path) = &arguments.json {
@@ -68,7 +71,7 @@ pub(super) fn run(arguments: &BenchArguments) -> Result<ExitCode> {
             scenes: &all,
         };
         let text = serde_json::to_string_pretty(&report).unwrap_or_default() + "\n";
-        if path.as_os_str() == "-" {
+        if to_stdout {
             print(&text)?;
         } else {
             std::fs::write(path, text).map_err(|error| Error::Image {

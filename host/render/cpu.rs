@@ -16,6 +16,9 @@ use crate::film;
 use crate::scene::World;
 use crate::scene::tree::{self, Acceleration};
 
+/// From how many spheres on a tree pays for squares of camera rays.
+const MIN_SPHERES: usize = 24;
+
 /// A world, and the tree over it if one pays.
 #[derive(Clone, Debug)]
 pub struct Prepared<'a> {
@@ -27,7 +30,12 @@ impl<'a> Prepared<'a> {
     /// Grows the tree.
     #[must_use]
     pub fn new(world: &'a World, acceleration: Acceleration) -> Self {
-        match tree::grow(&world.spheres, &[], (0.0, 0.0), acceleration) {
+        match tree::grow(
+            &world.spheres,
+            &[],
+            (0.0, 0.0),
+            acceleration.min_spheres(MIN_SPHERES),
+        ) {
             Some(tree) => Self {
                 world: Cow::Owned(tree.sort_world(world)),
                 nodes: tree.nodes,

@@ -18,6 +18,8 @@ use crate::kernel_module;
 use crate::scene::World;
 use crate::scene::tree::{self, Tree};
 
+/// From how many spheres on a tree pays against tiles of brute force: between 46 and 484.
+const MIN_FOR_TREE: usize = 256;
 /// From this many spheres on, those without a tree are gone through tile by tile.
 const MIN_FOR_TILES: usize = 16;
 /// What a ray takes in a tree, in intersections: a first guess, of which [`Pace`] learns more.
@@ -64,7 +66,12 @@ impl Prepared {
         // All have trees, or none has.
         let grow = |run: &Range<usize>| {
             let spheres = &world.spheres[run.clone()];
-            tree::grow(spheres, &[], (0.0, 0.0), settings.acceleration)
+            tree::grow(
+                spheres,
+                &[],
+                (0.0, 0.0),
+                settings.acceleration.min_spheres(MIN_FOR_TREE),
+            )
         };
         let trees: Option<Vec<Tree>> = runs.iter().map(grow).collect();
         let parts = runs.iter().enumerate().map(|(index, run)| {

@@ -26,9 +26,9 @@ const GRAIN: usize = 1 << 13;
 const SHARED: usize = 1 << 16;
 /// Beyond this depth nodes are halved, whatever that costs a ray: 8¹² is more than there can be.
 const HALVING_DEPTH: usize = Node::MAX_DEPTH - 12;
-/// Below this many spheres testing each is cheaper than a tree: measured by `spherule accuracy
-/// --scene` on worlds of growing size.
-pub const MIN_SPHERES: usize = 12;
+/// From how many spheres on a tree pays, for single rays on the CPU: between 64 and 128; camera rays by
+/// squares and rays on a GPU have thresholds of their own.
+pub const MIN_SPHERES: usize = 96;
 
 /// Whether a tree is grown.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -43,10 +43,11 @@ pub enum Acceleration {
 }
 
 impl Acceleration {
-    /// The fewest spheres that get a tree.
-    fn min_spheres(self) -> usize {
+    /// The fewest spheres that get a tree, where one pays from `measured` on.
+    #[must_use]
+    pub fn min_spheres(self, measured: usize) -> usize {
         match self {
-            Self::Auto => MIN_SPHERES,
+            Self::Auto => measured,
             Self::Tree => 1,
             Self::BruteForce => usize::MAX,
         }
@@ -183,17 +184,17 @@ impl Item {
 }
 
 /// Grows a tree over spheres that move while the shutter is open; those beyond the end of `velocities` are
-/// at rest. Without one where it would not pay, where a number is not finite or beyond
+/// at rest. Without one where there are fewer than `min_spheres`, where a number is not finite or beyond
 /// [`Node::MAX_COORDINATE`], or where there are more spheres than nodes can name.
 #[must_use]
 pub fn grow(
     spheres: &[Sphere],
     velocities: &[Vec3],
     shutter: (f32, f32),
-    acceleration: Acceleration,
+    min_spheres: usize,
 ) -> Option<Tree> {
     let count = spheres.len();
-    if !(acceleration.min_spheres()..=Node::MAX_SPHERES as usize).contains(&count) {
+    if !(min_spheres..=Node::MAX_SPHERES as usize).contains(&count) {
         return None;
     }
     let still = Vec3::ZERO;
@@ -792,7 +793,7 @@ mod tests {
 
     impl Grown {
         fn over(world: &World) -> Self {
-            let tree = grow(&world.spheres, &[], (0.0, 0.0), Acceleration::Auto).expect("a tree");
+            let tree = grow(&world.spheres, &[], (0.0, 0.0), 1).expect("a tree");
             Self {
                 world: tree.sort_world(world),
                 nodes: tree.nodes,
@@ -970,6 +971,6 @@ mod tests {
     fn a_world_that_is_not_finite_gets_no_tree() {
         let (_, mut world) = worlds().remove(0);
         world.add(Sphere::new(Vec3::NAN, 1.0), 0);
-        assert!(grow(&world.spheres, &[], (0.0, 0.0), Acceleration::Tree).is_none());
+        assert!(grow(&world.spheres, &[], (0.0, 0.0), 1).is_none());
     }
 }

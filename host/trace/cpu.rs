@@ -5,7 +5,7 @@ use spherule_kernel::nearest::{is_occluded, nearest_hit_in};
 use spherule_kernel::tree::{Node, is_occluded_in_tree, nearest_hit_in_tree, work_in_tree};
 use spherule_kernel::{Hit, Ray, Rung, Sphere};
 
-use crate::scene::tree::{self, Acceleration};
+use crate::scene::tree::{self, Acceleration, MIN_SPHERES};
 
 /// Rays that a thread takes at once.
 const GRAIN: usize = 1 << 10;
@@ -23,7 +23,12 @@ impl CpuTracer {
     /// Grows the tree.
     #[must_use]
     pub fn new(spheres: &[Sphere], acceleration: Acceleration) -> Self {
-        match tree::grow(spheres, &[], (0.0, 0.0), acceleration) {
+        match tree::grow(
+            spheres,
+            &[],
+            (0.0, 0.0),
+            acceleration.min_spheres(MIN_SPHERES),
+        ) {
             Some(tree) => Self {
                 spheres: tree.sort(spheres),
                 nodes: tree.nodes,

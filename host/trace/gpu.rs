@@ -10,6 +10,9 @@ use crate::error::Result;
 use crate::kernel_module;
 use crate::scene::tree::{self, Acceleration};
 
+/// From how many spheres on a tree pays for single rays on a GPU.
+const MIN_SPHERES: usize = 32;
+
 /// Spheres on a GPU, and the tree over them if one pays.
 #[derive(Debug)]
 pub struct GpuTracer<'a> {
@@ -36,20 +39,27 @@ impl<'a> GpuTracer<'a> {
     ///
     /// The device's errors, here and in the other functions.
     pub fn new(gpu: &'a Gpu, spheres: &[Sphere], acceleration: Acceleration) -> Result<Self> {
-        Ok(match tree::grow(spheres, &[], (0.0, 0.0), acceleration) {
-            Some(tree) => Self {
-                gpu,
-                spheres: gpu.upload("spheres", &tree.sort(spheres))?,
-                nodes: Some(gpu.upload("nodes", &tree.nodes)?),
-                order: tree.order,
+        Ok(
+            match tree::grow(
+                spheres,
+                &[],
+                (0.0, 0.0),
+                acceleration.min_spheres(MIN_SPHERES),
+            ) {
+                Some(tree) => Self {
+                    gpu,
+                    spheres: gpu.upload("spheres", &tree.sort(spheres))?,
+                    nodes: Some(gpu.upload("nodes", &tree.nodes)?),
+                    order: tree.order,
+                },
+                None => Self {
+                    gpu,
+                    spheres: gpu.upload("spheres", spheres)?,
+                    nodes: None,
+                    order: Vec::new(),
+                },
             },
-            None => Self {
-                gpu,
-                spheres: gpu.upload("spheres", spheres)?,
-                nodes: None,
-                order: Vec::new(),
-            },
-        })
+        )
     }
 
     /// Uploads rays.

@@ -62,7 +62,7 @@ impl Prepared {
             &scene.world.spheres,
             &scene.world.velocities,
             shutter,
-            acceleration,
+            acceleration.min_spheres(tree::MIN_SPHERES),
         ) {
             Some(tree) => (tree.sort_world(&scene.world), tree.nodes),
             None => (scene.world.clone(), Vec::new()),
