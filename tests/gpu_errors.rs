@@ -349,5 +349,5 @@ fn readback() {
     let error = render(&scene, Shading::Flat, &Device::Gpu(Box::new(noop())), QUIET)
         .expect_err("nothing was written");
     assert!(matches!(error, Error::Readback { .. }), "{error:?}");
-    assert_says(&error, &["144 of 144 threads"]);
+    assert_says(&error, &["144 of 144 pixels"]);
 }

@@ -199,7 +199,7 @@ impl Packet {
                 // A number that is none is asked about, too.
                 let mut may_hit = false;
                 for value in discriminant.0 {
-                    may_hit |= !(value < 0.0);
+                    may_hit |= (value >= 0.0) | value.is_nan();
                 }
                 if may_hit {
                     let index = first + index as u32;
@@ -360,9 +360,7 @@ impl Packet {
         let nearer = |i: usize| (t[i] < best[i]) | (index < sphere[i]);
         let is_new = |i: usize| (meets[i] > 0.0) & within(t[i], best[i]) & nearer(i);
         let nearest = lanes(|i| if is_new(i) { t[i] } else { best[i] });
-        for lane in 0..LANES {
-            self.sphere[group][lane] = if is_new(lane) { index } else { sphere[lane] };
-        }
+        self.sphere[group] = lanes(|i| if is_new(i) { index } else { sphere[i] });
         self.t[group] = Lanes(nearest);
         self.end[group] = largest(&nearest);
     }

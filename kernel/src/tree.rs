@@ -379,10 +379,9 @@ fn walk<const ANY: bool, S: Spheres + ?Sized>(
         let bit = 31 - group.leading_zeros();
         group ^= 1 << bit;
         if group > 0x00ff_ffff && height < Node::MAX_DEPTH {
+            let kept = MaybeUninit::new(UVec2::new(first, group));
             // SAFETY: `height` is below the array's length.
-            unsafe {
-                *stack.index_unchecked_mut(height) = MaybeUninit::new(UVec2::new(first, group))
-            };
+            unsafe { *stack.index_unchecked_mut(height) = kept };
             height += 1;
         }
         let place = (bit - 24) ^ slabs.octant;
