@@ -13,7 +13,7 @@
 //! | [`mod@render`] | a scene on a device, GPU or CPU |
 //! | [`trace`] | rays by the million, without an image |
 //! | [`accuracy`] | how right the rungs of the ladder are, decided by an exact oracle |
-//! | [`bench`] | how fast rays of every kind are |
+//! | [`mod@bench`] | how fast rays of every kind are |
 //! | [`film`] | images: encoding, files, comparison |
 //! | [`error`] | [`Error`]: what can go wrong, and how to mend it |
 //! | [`kernel_module`] | the kernel's SPIR-V that this build embeds |
