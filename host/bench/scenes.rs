@@ -49,8 +49,9 @@ impl BenchScene {
             Self::S2 => "S2".into(),
             Self::S46 => "S46".into(),
             Self::S500 => "S500".into(),
-            Self::Uniform(count) if count >= 1_000_000 => format!("R{}M", count / 1_000_000),
-            Self::Uniform(count) => format!("R{}k", count / 1000),
+            Self::Uniform(count) if count % 1_000_000 == 0 => format!("R{}M", count / 1_000_000),
+            Self::Uniform(count) if count % 1000 == 0 => format!("R{}k", count / 1000),
+            Self::Uniform(count) => format!("R{count}"),
             Self::Lattice => "L1M".into(),
             Self::LatticeRotated => "L1M-rotated".into(),
             Self::Clustered => "X1M".into(),
@@ -65,13 +66,13 @@ impl BenchScene {
             .find(|scene| scene.name().eq_ignore_ascii_case(name));
         listed.or_else(|| {
             // Any other number of balls.
-            let (number, unit) = name
-                .strip_prefix(['R', 'r'])?
-                .split_at_checked(name.len() - 2)?;
-            let unit = match unit {
-                "k" => 1000,
-                "M" => 1_000_000,
-                _ => return None,
+            let number = name.strip_prefix(['R', 'r'])?;
+            let (number, unit) = if let Some(thousands) = number.strip_suffix('k') {
+                (thousands, 1000)
+            } else if let Some(millions) = number.strip_suffix('M') {
+                (millions, 1_000_000)
+            } else {
+                (number, 1)
             };
             let count = number.parse::<u32>().ok()?.checked_mul(unit)?;
             (count > 0).then_some(Self::Uniform(count))
@@ -143,7 +144,9 @@ pub fn load(name: &str, width: u32, height: u32) -> Result<(Scene, f32)> {
         return Err(SceneError::without_place(
             name,
             "is no bench scene",
-            format!("give one of {names}, or a scene file (.toml, .pdb, .ent or .xyz)"),
+            format!(
+                "give one of {names}, R and another number of spheres such as R300k, or a scene file (.toml, .pdb, .ent or .xyz)"
+            ),
         )
         .into());
     }

@@ -4,7 +4,7 @@
 //! Top down, by the surface area heuristic over bins (I. Wald, On fast Construction of SAH-based
 //! Bounding Volume Hierarchies, RT 2007). Two halves are split again until a node has its eight children;
 //! a part that fits into a node less high is left alone, so that nodes are full at the bottom, where
-//! most of them are. The spheres of one node, up to 24, are shared out among its children by the same
+//! most of them are. The spheres of one node, up to 32, are shared out among its children by the same
 //! heuristic, over every place where they could be split.
 
 use glam::{DVec3, UVec4, Vec3, Vec4};
@@ -26,9 +26,9 @@ const GRAIN: usize = 1 << 13;
 const SHARED: usize = 1 << 16;
 /// Beyond this depth nodes are halved, whatever that costs a ray: 8¹² is more than there can be.
 const HALVING_DEPTH: usize = Node::MAX_DEPTH - 12;
-/// From how many spheres on a tree pays, for single rays on the CPU: between 64 and 128; camera rays by
+/// From how many spheres on a tree pays, for single rays on the CPU: between 32 and 48; camera rays by
 /// squares and rays on a GPU have thresholds of their own.
-pub const MIN_SPHERES: usize = 96;
+pub const MIN_SPHERES: usize = 40;
 
 /// Whether a tree is grown.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -370,7 +370,11 @@ fn make_node<'a>(
     }
     let mut inner = Vec::new();
     for (place, part) in sorted.into_iter().enumerate() {
-        let Some(part) = part else { continue };
+        let Some(part) = part else {
+            // A box that ends before it begins, which no ray meets.
+            put_sides([255; 3], [0; 3], place, &mut node);
+            continue;
+        };
         grid.put(&part.bounds, place, &mut node);
         let count = part.items.len();
         if count <= Node::MAX_LEAF {
@@ -747,28 +751,24 @@ impl Grid {
 
     /// Puts a child's box at its place, rounded outwards.
     fn put(&self, bounds: &Bounds, place: usize, node: &mut Node) {
-        for axis in 0..3 {
+        let along = |axis: usize, x: f32| {
             let per_step = f64::from_bits((1023 + 127 - u64::from(self.exponents[axis])) << 52);
-            let along = |x: f32| (f64::from(x) - f64::from(self.corner[axis])) * per_step;
-            let low = along(bounds.low[axis]).floor().clamp(0.0, 255.0);
-            let high = along(bounds.high[axis]).ceil().clamp(0.0, 255.0);
-            let (low, high) = (low as u32, high as u32);
-            match axis {
-                0 => {
-                    put_byte(&mut node.low_xy, place, low);
-                    put_byte(&mut node.low_z_high_x, 8 + place, high);
-                }
-                1 => {
-                    put_byte(&mut node.low_xy, 8 + place, low);
-                    put_byte(&mut node.high_yz, place, high);
-                }
-                _ => {
-                    put_byte(&mut node.low_z_high_x, place, low);
-                    put_byte(&mut node.high_yz, 8 + place, high);
-                }
-            }
-        }
+            (f64::from(x) - f64::from(self.corner[axis])) * per_step
+        };
+        let low = |axis| along(axis, bounds.low[axis]).floor().clamp(0.0, 255.0) as u32;
+        let high = |axis| along(axis, bounds.high[axis]).ceil().clamp(0.0, 255.0) as u32;
+        put_sides([0, 1, 2].map(low), [0, 1, 2].map(high), place, node);
     }
+}
+
+/// Puts the sides of a child's box where there are none yet.
+fn put_sides(low: [u32; 3], high: [u32; 3], place: usize, node: &mut Node) {
+    put_byte(&mut node.low_xy, place, low[0]);
+    put_byte(&mut node.low_xy, 8 + place, low[1]);
+    put_byte(&mut node.low_z_high_x, place, low[2]);
+    put_byte(&mut node.low_z_high_x, 8 + place, high[0]);
+    put_byte(&mut node.high_yz, place, high[1]);
+    put_byte(&mut node.high_yz, 8 + place, high[2]);
 }
 
 /// Puts a byte where there is none yet.
@@ -781,9 +781,10 @@ mod tests {
     use super::*;
     use crate::accuracy::families::Family;
     use crate::accuracy::random::Random;
+    use crate::trace::single::Single;
     use spherule_kernel::nearest::nearest_hit_in;
     use spherule_kernel::tree::{is_occluded_in_tree, nearest_hit_in_tree};
-    use spherule_kernel::{Ray, Rung};
+    use spherule_kernel::{Hit, Ray, Rung};
 
     struct Grown {
         world: World,
@@ -852,7 +853,12 @@ mod tests {
                     let origin = center + random.vec3(-8.0, 8.0);
                     let aim = world.spheres[i % world.spheres.len()];
                     let at = aim.center() + random.unit_vec3() * aim.radius();
-                    Ray::new(origin, at - origin)
+                    match i % 8 {
+                        0 => Ray::within(origin, at - origin, -3.0, 0.7),
+                        1 => Ray::within(at, at - origin, -0.2, 0.0),
+                        2 => Ray::within(origin, (at - origin) * 1e-25, 1e24, f32::INFINITY),
+                        _ => Ray::new(origin, at - origin),
+                    }
                 })
                 .collect();
             rays.extend(
@@ -867,9 +873,27 @@ mod tests {
             let mut hits = 0;
             let spheres = &grown.world.spheres[..];
             for rung in Rung::ALL {
+                let mut by_several = [
+                    vec![Hit::NONE; rays.len()],
+                    vec![Hit::NONE; rays.len()],
+                    vec![Hit::NONE; rays.len()],
+                ];
+                let [nearest, any, all] = &mut by_several;
+                let in_tree = Single::new(rung, &grown.nodes);
+                in_tree.trace::<false, _>(&rays, spheres, |index, hit| nearest[index] = hit);
+                in_tree.trace::<true, _>(&rays, spheres, |index, hit| any[index] = hit);
+                let in_none = Single::new(rung, &[]);
+                in_none.trace::<false, _>(&rays, spheres, |index, hit| all[index] = hit);
                 let rung = rung.to_u32();
-                for ray in &rays {
+                for (index, ray) in rays.iter().enumerate() {
                     let brute = nearest_hit_in(rung, ray, spheres, 0, u32::MAX);
+                    assert_eq!(by_several[0][index], brute, "{name} {ray:?}");
+                    assert_eq!(
+                        by_several[1][index].is_some(),
+                        brute.is_some(),
+                        "{name} {ray:?}"
+                    );
+                    assert_eq!(by_several[2][index], brute, "{name} {ray:?}");
                     let found = nearest_hit_in_tree(rung, ray, &grown.nodes, spheres);
                     assert_eq!(found, brute, "{name} {ray:?}");
                     hits += usize::from(found.is_some());

@@ -1,10 +1,10 @@
 //! [`CpuTracer`]: rays on every thread of this machine.
 
 use rayon::prelude::*;
-use spherule_kernel::nearest::{is_occluded, nearest_hit_in};
-use spherule_kernel::tree::{Node, is_occluded_in_tree, nearest_hit_in_tree, work_in_tree};
+use spherule_kernel::tree::{Node, work_in_tree};
 use spherule_kernel::{Hit, Ray, Rung, Sphere};
 
+use super::single::Single;
 use crate::scene::tree::{self, Acceleration, MIN_SPHERES};
 
 /// Rays that a thread takes at once.
@@ -52,32 +52,33 @@ impl CpuTracer {
     /// long as `rays`.
     pub fn nearest(&self, rung: Rung, rays: &[Ray], hits: &mut Vec<Hit>) {
         hits.resize(rays.len(), Hit::NONE);
-        let trace = match rung {
-            Rung::Textbook => Self::nearest_on::<{ Rung::Textbook.to_u32() }>,
-            Rung::Robust => Self::nearest_on::<{ Rung::Robust.to_u32() }>,
-            Rung::Compensated => Self::nearest_on::<{ Rung::Compensated.to_u32() }>,
-            Rung::Double => Self::nearest_on::<{ Rung::Double.to_u32() }>,
-            Rung::Certified => Self::nearest_on::<{ Rung::Certified.to_u32() }>,
-        };
+        let single = Single::new(rung, &self.nodes);
+        let spheres = &self.spheres[..];
         hits.par_chunks_mut(GRAIN)
             .zip(rays.par_chunks(GRAIN))
-            .for_each(|(hits, rays)| trace(self, rays, hits));
+            .for_each(|(hits, rays)| {
+                single.trace::<false, _>(rays, spheres, |index, mut hit| {
+                    if let Some(given) = self.order.get(hit.sphere as usize) {
+                        hit.sphere = *given;
+                    }
+                    hits[index] = hit;
+                });
+            });
     }
 
     /// Whether each ray hits anything, 1 or 0. `occluded` gets as long as `rays`.
     pub fn occluded(&self, rung: Rung, rays: &[Ray], occluded: &mut Vec<u32>) {
         occluded.resize(rays.len(), 0);
-        let trace = match rung {
-            Rung::Textbook => Self::occluded_on::<{ Rung::Textbook.to_u32() }>,
-            Rung::Robust => Self::occluded_on::<{ Rung::Robust.to_u32() }>,
-            Rung::Compensated => Self::occluded_on::<{ Rung::Compensated.to_u32() }>,
-            Rung::Double => Self::occluded_on::<{ Rung::Double.to_u32() }>,
-            Rung::Certified => Self::occluded_on::<{ Rung::Certified.to_u32() }>,
-        };
+        let single = Single::new(rung, &self.nodes);
+        let spheres = &self.spheres[..];
         occluded
             .par_chunks_mut(GRAIN)
             .zip(rays.par_chunks(GRAIN))
-            .for_each(|(occluded, rays)| trace(self, rays, occluded));
+            .for_each(|(occluded, rays)| {
+                single.trace::<true, _>(rays, spheres, |index, hit| {
+                    occluded[index] = u32::from(hit.is_some());
+                });
+            });
     }
 
     /// What the rays take in the tree, all together; `None` without one.
@@ -96,31 +97,5 @@ impl CpuTracer {
                 .map(of)
                 .reduce(|| (0, 0), |a, b| (a.0 + b.0, a.1 + b.1)),
         )
-    }
-
-    fn nearest_on<const RUNG: u32>(&self, rays: &[Ray], hits: &mut [Hit]) {
-        let spheres = &self.spheres[..];
-        for (ray, hit) in rays.iter().zip(hits) {
-            *hit = if self.nodes.is_empty() {
-                nearest_hit_in(RUNG, ray, spheres, 0, u32::MAX)
-            } else {
-                let mut hit = nearest_hit_in_tree(RUNG, ray, &self.nodes, spheres);
-                if hit.is_some() {
-                    hit.sphere = self.order[hit.sphere as usize];
-                }
-                hit
-            };
-        }
-    }
-
-    fn occluded_on<const RUNG: u32>(&self, rays: &[Ray], occluded: &mut [u32]) {
-        let spheres = &self.spheres[..];
-        for (ray, occluded) in rays.iter().zip(occluded) {
-            *occluded = u32::from(if self.nodes.is_empty() {
-                is_occluded(RUNG, ray, spheres)
-            } else {
-                is_occluded_in_tree(RUNG, ray, &self.nodes, spheres)
-            });
-        }
     }
 }

@@ -3,10 +3,14 @@
 //! | module | holds |
 //! | --- | --- |
 //! | [`cpu`] | [`CpuTracer`]: on every thread of this machine |
+//! | [`single`] | rays one by one on the CPU, several boxes and spheres side by side |
 //! | [`gpu`] | [`GpuTracer`]: on a GPU |
 
+#[cfg(target_arch = "x86_64")]
+mod avx2;
 pub mod cpu;
 pub mod gpu;
+pub mod single;
 
 pub use cpu::CpuTracer;
 pub use gpu::GpuTracer;

@@ -12,7 +12,7 @@ use glam::{UVec4, Vec3, Vec4};
 use crate::sphere::Sphere;
 
 /// 64u.
-const SLACK: f32 = 1.0 / (1 << 18) as f32;
+pub const SLACK: f32 = 1.0 / (1 << 18) as f32;
 
 /// What rays of one origin share of a sphere: o and c, lessened.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -18,6 +18,7 @@ use crate::nearest::{is_occluded, nearest_hit_in};
 use crate::optics::{Fresnel, Incidence};
 use crate::precision::intersect;
 use crate::shading::shade;
+use crate::traversal::OneByOne;
 use crate::tree::{Node, is_occluded_in_tree, nearest_hit_in_tree};
 use crate::walk::{Walk, walk_inside};
 use crate::{
@@ -277,8 +278,11 @@ pub fn trace_paths(
                 effects,
                 rung,
                 launch,
-                has_tree,
-                nodes,
+                traversal: OneByOne {
+                    rung,
+                    has_tree,
+                    nodes,
+                },
                 spheres,
                 velocities,
                 material_ids,

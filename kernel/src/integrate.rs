@@ -23,7 +23,7 @@ use crate::hit::Hit;
 use crate::light::{self, Light};
 use crate::material::{Material, material_of};
 use crate::microfacet::{RoughMetal, SMOOTHEST, schlick};
-use crate::nearest::{MovingSpheres, Spheres as _, is_occluded, nearest_hit_in};
+use crate::nearest::{MovingSpheres, Spheres as _};
 use crate::optics::{Incidence, reflect};
 use crate::precision::intersect;
 use crate::random::Sampler;
@@ -33,22 +33,20 @@ use crate::sampling::{
 };
 use crate::sphere::Sphere;
 use crate::surface::{Surface, unit};
-use crate::tree::{Node, is_occluded_in_tree, nearest_hit_in_tree};
+use crate::traversal::Traversal;
 
 /// What stays the same for all paths of a launch: how the pipeline was compiled, what it was told,
 /// and the world.
 #[derive(Clone, Copy, Debug)]
-pub struct Scenery<'a> {
+pub struct Scenery<'a, T> {
     /// The effects that the pipeline holds.
     pub effects: Effects,
     /// The rung, a value of [`Rung::to_u32`](crate::Rung::to_u32).
     pub rung: u32,
     /// What the launch was told.
     pub launch: &'a PathLaunch,
-    /// 1 if the spheres stand in a tree.
-    pub has_tree: u32,
-    /// The nodes of the tree.
-    pub nodes: &'a [Node],
+    /// What finds hits among the spheres, on this rung.
+    pub traversal: T,
     /// The spheres.
     pub spheres: &'a [Sphere],
     /// How each sphere moves, in scene units per unit of time.
@@ -63,7 +61,7 @@ pub struct Scenery<'a> {
     pub tables: &'a [f32],
 }
 
-impl Scenery<'_> {
+impl<T: Traversal> Scenery<'_, T> {
     /// The spheres where they are at `time`.
     #[inline]
     fn spheres_at(&self, time: f32) -> MovingSpheres<'_> {
@@ -84,22 +82,12 @@ impl Scenery<'_> {
 
     #[inline]
     fn nearest_hit(&self, ray: &Ray, time: f32) -> Hit {
-        let spheres = self.spheres_at(time);
-        if self.has_tree == 1 {
-            nearest_hit_in_tree(self.rung, ray, self.nodes, &spheres)
-        } else {
-            nearest_hit_in(self.rung, ray, &spheres, 0, u32::MAX)
-        }
+        self.traversal.nearest_hit(ray, &self.spheres_at(time))
     }
 
     #[inline]
     fn is_occluded(&self, ray: &Ray, time: f32) -> bool {
-        let spheres = self.spheres_at(time);
-        if self.has_tree == 1 {
-            is_occluded_in_tree(self.rung, ray, self.nodes, &spheres)
-        } else {
-            is_occluded(self.rung, ray, &spheres)
-        }
+        self.traversal.is_occluded(ray, &self.spheres_at(time))
     }
 }
 
@@ -148,7 +136,11 @@ const PHASE: u32 = 2;
 /// the tile.
 #[inline]
 #[must_use]
-pub fn trace_pixel(scenery: &Scenery<'_>, pixel: UVec2, previous: Accumulator) -> Accumulator {
+pub fn trace_pixel<T: Traversal>(
+    scenery: &Scenery<'_, T>,
+    pixel: UVec2,
+    previous: Accumulator,
+) -> Accumulator {
     let launch = scenery.launch;
     let pixel = launch.tile_origin + pixel;
     let mut accumulator = previous;
@@ -169,7 +161,7 @@ pub fn trace_pixel(scenery: &Scenery<'_>, pixel: UVec2, previous: Accumulator) -
 
 /// The path of a sample where it leaves the camera.
 #[inline]
-fn start(scenery: &Scenery<'_>, pixel: UVec2, sampler: &Sampler) -> Path {
+fn start<T: Traversal>(scenery: &Scenery<'_, T>, pixel: UVec2, sampler: &Sampler) -> Path {
     let (effects, launch) = (scenery.effects, scenery.launch);
     let camera = launch.camera;
     let size = launch.image_size;
@@ -227,7 +219,7 @@ impl Vertex {
     /// How much light is scattered from `to` into the path, times the cosine at a surface; and the
     /// density with which [`Vertex::sample`] chooses `to`.
     #[inline]
-    fn evaluate(&self, scenery: &Scenery<'_>, to: Vec3) -> (Vec3, f32) {
+    fn evaluate<T: Traversal>(&self, scenery: &Scenery<'_, T>, to: Vec3) -> (Vec3, f32) {
         let effects = scenery.effects;
         if effects.any(Effects::FOG) && self.lobe == PHASE {
             let phase = scenery.launch.fog.phase(self.incoming.dot(to));
@@ -243,7 +235,7 @@ impl Vertex {
 
     /// A direction to continue in.
     #[inline]
-    fn sample(&self, scenery: &Scenery<'_>, u: Vec2, choice: f32) -> Vec3 {
+    fn sample<T: Traversal>(&self, scenery: &Scenery<'_, T>, u: Vec2, choice: f32) -> Vec3 {
         let effects = scenery.effects;
         if effects.any(Effects::FOG) && self.lobe == PHASE {
             scenery.launch.fog.sample(self.incoming, u)
@@ -258,7 +250,7 @@ impl Vertex {
 
 /// Takes a path to its next vertex and away from it; false where it ends.
 #[inline]
-fn step(scenery: &Scenery<'_>, path: &mut Path, sampler: &Sampler) -> bool {
+fn step<T: Traversal>(scenery: &Scenery<'_, T>, path: &mut Path, sampler: &Sampler) -> bool {
     let (effects, launch) = (scenery.effects, scenery.launch);
     let dimension = OF_CAMERA + OF_VERTEX * path.bounces;
     let ray = Ray::within(path.origin, path.direction, f32::MIN_POSITIVE, Hit::NONE_T);
@@ -394,7 +386,7 @@ fn step(scenery: &Scenery<'_>, path: &mut Path, sampler: &Sampler) -> bool {
 
 /// The light that a path brings home which meets nothing.
 #[inline]
-fn arrive_at_sky(scenery: &Scenery<'_>, path: &mut Path) {
+fn arrive_at_sky<T: Traversal>(scenery: &Scenery<'_, T>, path: &mut Path) {
     let (effects, sky) = (scenery.effects, &scenery.launch.sky);
     if effects.any(Effects::TRANSPARENT_BACKGROUND) && path.bounces == 0 {
         path.alpha = 0.0;
@@ -420,7 +412,12 @@ fn arrive_at_sky(scenery: &Scenery<'_>, path: &mut Path) {
 
 /// The light that a path brings home which meets a sphere of light.
 #[inline]
-fn arrive_at_lamp(scenery: &Scenery<'_>, path: &mut Path, sphere: Sphere, radiance: Vec3) {
+fn arrive_at_lamp<T: Traversal>(
+    scenery: &Scenery<'_, T>,
+    path: &mut Path,
+    sphere: Sphere,
+    radiance: Vec3,
+) {
     let mut weight = 1.0;
     if scenery.effects.any(Effects::SOFT_SHADOWS) && path.density > 0.0 {
         let power = luminance(radiance) * sphere.radius() * sphere.radius();
@@ -433,7 +430,12 @@ fn arrive_at_lamp(scenery: &Scenery<'_>, path: &mut Path, sphere: Sphere, radian
 
 /// Whether the ambient light along `direction` arrives at the surface.
 #[inline]
-fn ambient_light(scenery: &Scenery<'_>, time: f32, surface: &Surface, direction: Vec3) -> Vec3 {
+fn ambient_light<T: Traversal>(
+    scenery: &Scenery<'_, T>,
+    time: f32,
+    surface: &Surface,
+    direction: Vec3,
+) -> Vec3 {
     let (effects, launch) = (scenery.effects, scenery.launch);
     let mut ray = surface.leave(direction);
     ray.t_max = launch.ambient_distance;
@@ -448,8 +450,8 @@ fn ambient_light(scenery: &Scenery<'_>, time: f32, surface: &Surface, direction:
 
 /// The light that one light, chosen at random, gives into the path by way of the vertex.
 #[inline]
-fn light_from_seeking(
-    scenery: &Scenery<'_>,
+fn light_from_seeking<T: Traversal>(
+    scenery: &Scenery<'_, T>,
     path: &Path,
     surface: &Surface,
     vertex: &Vertex,
@@ -518,7 +520,13 @@ struct Found {
 
 /// A direction in which the light is.
 #[inline]
-fn seek(scenery: &Scenery<'_>, lamp: &Light, point: Vec3, time: f32, u: Vec2) -> Found {
+fn seek<T: Traversal>(
+    scenery: &Scenery<'_, T>,
+    lamp: &Light,
+    point: Vec3,
+    time: f32,
+    u: Vec2,
+) -> Found {
     let (effects, launch) = (scenery.effects, scenery.launch);
     let mut found = Found {
         direction: lamp.position,

@@ -16,6 +16,7 @@
 //! | [`nearest`] | the nearest hit of a ray among a slice of spheres, and whether there is any |
 //! | [`candidates`] | which of many spheres a rung must be asked about |
 //! | [`tree`] | [`tree::Node`]: boxes around spheres, so that a ray looks at few |
+//! | [`traversal`] | what finds the hits of light paths |
 //! | [`surface`] | the point and the normal at a hit |
 //! | [`camera`] | [`Camera`]: from a pixel to a ray |
 //! | [`material`] | [`Material`]: what a sphere is made of |
@@ -71,6 +72,7 @@ pub mod sphere;
 #[cfg(not(target_arch = "spirv"))]
 pub mod spirv;
 pub mod surface;
+pub mod traversal;
 pub mod tree;
 pub mod walk;
 

@@ -103,7 +103,7 @@ pub fn nearest_hit_in<S: Spheres + ?Sized>(
     let first = first.min(len);
     let end = first + count.min(len - first);
 
-    let mut t_max = ray.t_max;
+    let mut t_max = ray.end();
     let mut hit = Hit::NONE_SPHERE;
     let mut index = first;
     while index < end {
@@ -136,7 +136,7 @@ pub fn is_occluded<S: Spheres + ?Sized>(rung: u32, ray: &Ray, spheres: &S) -> bo
     while (index < spheres.count()) & !occluded {
         // SAFETY: `index` is below the number of spheres.
         let sphere = unsafe { spheres.sphere(index) };
-        occluded = intersect(rung, sphere, ray) < ray.t_max;
+        occluded = intersect(rung, sphere, ray) < ray.end();
         index += 1;
     }
     occluded

@@ -3,6 +3,8 @@
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
+use crate::hit::Hit;
+
 /// The points `origin + t · direction` for `t_min ≤ t < t_max`.
 ///
 /// The interval is half-open so that "nearer than what was found so far" is one comparison, and
@@ -40,6 +42,14 @@ impl Ray {
             direction,
             t_max,
         }
+    }
+
+    /// The bound on `t`, and at most [`Hit::NONE_T`]: a ray whose `t_max` is infinite ends
+    /// where no hit could be told from none.
+    #[inline]
+    #[must_use]
+    pub fn end(&self) -> f32 {
+        self.t_max.min(Hit::NONE_T)
     }
 
     /// The point at parameter `t`.

@@ -51,6 +51,13 @@ impl Sphere {
         self.center_radius.w
     }
 
+    /// Centre and radius, as one load.
+    #[inline]
+    #[must_use]
+    pub const fn to_vec4(self) -> Vec4 {
+        self.center_radius
+    }
+
     /// Whether the centre is finite and the radius is finite and above zero.
     #[must_use]
     pub fn is_valid(&self) -> bool {

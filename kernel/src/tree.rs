@@ -149,24 +149,38 @@ fn corner(bits: UVec4) -> Vec3 {
 const U: f32 = 1.0 / (1 << 24) as f32;
 
 /// What stays the same of a ray as it meets box after box.
-#[derive(Clone, Copy)]
-struct Slabs {
-    origin: Vec3,
+#[derive(Clone, Copy, Debug)]
+pub struct Slabs {
+    /// The ray's.
+    pub origin: Vec3,
     /// One over the direction, whose largest component was brought between 1 and 2.
-    inverse: Vec3,
+    pub inverse: Vec3,
     /// How much sooner planes are met for the rung's sake, and how much later.
-    widening: Vec3,
+    pub widening: Vec3,
     /// What a parameter of the ray is, times this, as the planes count it.
-    unit: f32,
+    pub unit: f32,
     /// The start of the ray's interval.
-    start: f32,
+    pub start: f32,
     /// Bit k set where the direction is positive along axis k.
-    octant: u32,
+    pub octant: u32,
+}
+
+/// The planes of a node's grid along a ray: plane q is met at q·step + near or far.
+#[derive(Clone, Copy, Debug)]
+pub struct Planes {
+    /// From one plane to the next.
+    pub step: Vec3,
+    /// The first plane, as one where a box begins.
+    pub near: Vec3,
+    /// The first plane, as one where a box ends.
+    pub far: Vec3,
 }
 
 impl Slabs {
+    /// Of a ray in a tree, which has a first node.
     #[inline]
-    fn of(rung: u32, ray: &Ray, nodes: &[Node]) -> Self {
+    #[must_use]
+    pub fn of(rung: u32, ray: &Ray, nodes: &[Node]) -> Self {
         let d = ray.direction;
         let largest = d.abs().max_element().max(f32::MIN_POSITIVE);
         // 2 to the exponent of the largest component, and one over it.
@@ -192,9 +206,10 @@ impl Slabs {
         }
     }
 
-    /// The children that the ray may meet before `end`, a bit each.
+    /// Where the planes of a node are met.
     #[inline]
-    fn meets(&self, node: &Node, end: f32) -> u32 {
+    #[must_use]
+    pub fn planes(&self, node: &Node) -> Planes {
         let exponents = node.grid.w;
         let step = Vec3::new(
             f32::from_bits((exponents & 0xff) << 23),
@@ -203,12 +218,28 @@ impl Slabs {
         ) * self.inverse;
         let offset = (corner(node.grid) - self.origin) * self.inverse;
         let slack = (offset.abs() + step.abs() * 256.0) * (16.0 * U) + self.widening;
-        let boxes = Boxes {
+        Planes {
             step,
             near: offset - slack,
             far: offset + slack,
+        }
+    }
+
+    /// The end of a ray, given as the planes count it, with what a box test may be off by.
+    #[inline]
+    #[must_use]
+    pub fn widened_end(end: f32) -> f32 {
+        end + end.abs() * (16.0 * U)
+    }
+
+    /// The children that the ray may meet before `end`, a bit each.
+    #[inline]
+    fn meets(&self, node: &Node, end: f32) -> u32 {
+        let planes = self.planes(node);
+        let boxes = Boxes {
+            planes,
             start: self.start,
-            end: end + end.abs() * (16.0 * U),
+            end: Self::widened_end(end),
         };
         let (low_xy, mixed, high_yz) = (node.low_xy, node.low_z_high_x, node.high_yz);
         let mut near_x = UVec2::new(low_xy.x, low_xy.y);
@@ -249,12 +280,10 @@ impl Slabs {
     }
 }
 
-/// Planes of boxes, as parameters along a ray: q·step + near or far, q a byte.
+/// Boxes, and a piece of a ray that may meet them.
 #[derive(Clone, Copy)]
 struct Boxes {
-    step: Vec3,
-    near: Vec3,
-    far: Vec3,
+    planes: Planes,
     start: f32,
     end: f32,
 }
@@ -270,12 +299,13 @@ impl Boxes {
     #[inline]
     fn meets_one(&self, planes: [u32; 6], shift: u32) -> bool {
         let byte = |word: u32| ((word >> shift) & 0xff) as f32;
-        let near_x = byte(planes[0]) * self.step.x + self.near.x;
-        let near_y = byte(planes[1]) * self.step.y + self.near.y;
-        let near_z = byte(planes[2]) * self.step.z + self.near.z;
-        let far_x = byte(planes[3]) * self.step.x + self.far.x;
-        let far_y = byte(planes[4]) * self.step.y + self.far.y;
-        let far_z = byte(planes[5]) * self.step.z + self.far.z;
+        let Planes { step, near, far } = self.planes;
+        let near_x = byte(planes[0]) * step.x + near.x;
+        let near_y = byte(planes[1]) * step.y + near.y;
+        let near_z = byte(planes[2]) * step.z + near.z;
+        let far_x = byte(planes[3]) * step.x + far.x;
+        let far_y = byte(planes[4]) * step.y + far.y;
+        let far_z = byte(planes[5]) * step.z + far.z;
         let near = near_x.max(near_y).max(near_z.max(self.start));
         let far = far_x.min(far_y).min(far_z.min(self.end));
         near <= far
@@ -363,7 +393,7 @@ fn walk<const ANY: bool, S: Spheres + ?Sized>(
     let slabs = Slabs::of(rung, ray, nodes);
     // What changes on the way is kept apart from what does not: compilers for GPUs carry a whole struct from
     // round to round if any of it changes.
-    let mut t_max = ray.t_max;
+    let mut t_max = ray.end();
     let mut end = t_max * slabs.unit;
     let mut hit_t = Hit::NONE_T;
     let mut hit_sphere = Hit::NONE_SPHERE;
@@ -446,14 +476,16 @@ fn walk<const ANY: bool, S: Spheres + ?Sized>(
 
 /// The sum of eight numbers of four bits.
 #[inline]
-fn sum_of_nibbles(nibbles: u32) -> u32 {
+#[must_use]
+pub fn sum_of_nibbles(nibbles: u32) -> u32 {
     let bytes = (nibbles & 0x0f0f_0f0f) + ((nibbles >> 4) & 0x0f0f_0f0f);
     bytes.wrapping_mul(0x0101_0101) >> 24
 }
 
 /// The next larger float.
 #[inline]
-fn next_up(x: f32) -> f32 {
+#[must_use]
+pub fn next_up(x: f32) -> f32 {
     let bits = x.to_bits();
     f32::from_bits(if x > 0.0 {
         bits + 1

@@ -12,6 +12,7 @@ use super::{Prepared, Progress, Settings};
 use crate::error::{Error, Result};
 use crate::film;
 use crate::render::Timings;
+use crate::trace::single::Single;
 
 /// Rows in a band.
 const BAND_ROWS: usize = 2;
@@ -32,7 +33,7 @@ const STILL: u32 = Effects::ALL
     .to_bits();
 const ALL: u32 = Effects::ALL.to_bits();
 
-type Trace = fn(&Prepared, &PathLaunch, &mut [Accumulator]);
+type Trace = fn(Rung, &Prepared, &PathLaunch, &mut [Accumulator]);
 
 /// Renders on every thread of the pool.
 ///
@@ -58,7 +59,7 @@ pub fn render(
             ..prepared.launch
         };
         let begun = Instant::now();
-        trace(prepared, &launch, &mut accumulators);
+        trace(settings.rung, prepared, &launch, &mut accumulators);
         let stop = budget.took(count, begun.elapsed(), || {
             Ok::<_, Error>(noise(&accumulators))
         })?;
@@ -103,6 +104,7 @@ fn trace_on<const RUNG: u32>(effects: Effects) -> Trace {
 }
 
 fn trace<const EFFECTS: u32, const RUNG: u32>(
+    rung: Rung,
     prepared: &Prepared,
     launch: &PathLaunch,
     accumulators: &mut [Accumulator],
@@ -115,8 +117,7 @@ fn trace<const EFFECTS: u32, const RUNG: u32>(
             .within(called),
         rung: RUNG,
         launch,
-        has_tree: u32::from(!prepared.nodes.is_empty()),
-        nodes: &prepared.nodes,
+        traversal: Single::new(rung, &prepared.nodes),
         spheres: &world.spheres,
         velocities: &prepared.velocities,
         material_ids: &world.material_ids,

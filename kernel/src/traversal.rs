@@ -1,0 +1,46 @@
+//! [`Traversal`]: how the rays of light paths find what they hit. Runs on the GPU and on the CPU.
+
+use crate::hit::Hit;
+use crate::nearest::{MovingSpheres, is_occluded, nearest_hit_in};
+use crate::ray::Ray;
+use crate::tree::{Node, is_occluded_in_tree, nearest_hit_in_tree};
+
+/// Finds what rays hit. A host may have a faster one than the kernel's, with the same answers.
+pub trait Traversal {
+    /// The nearest hit; of two equally near, the one of lower index.
+    fn nearest_hit(&self, ray: &Ray, spheres: &MovingSpheres<'_>) -> Hit;
+
+    /// Whether the ray hits anything.
+    fn is_occluded(&self, ray: &Ray, spheres: &MovingSpheres<'_>) -> bool;
+}
+
+/// One box and one sphere after the other.
+#[derive(Clone, Copy, Debug)]
+pub struct OneByOne<'a> {
+    /// The rung, a value of [`Rung::to_u32`](crate::Rung::to_u32).
+    pub rung: u32,
+    /// 1 if the spheres stand in a tree, else every one is tested.
+    pub has_tree: u32,
+    /// The nodes of the tree.
+    pub nodes: &'a [Node],
+}
+
+impl Traversal for OneByOne<'_> {
+    #[inline]
+    fn nearest_hit(&self, ray: &Ray, spheres: &MovingSpheres<'_>) -> Hit {
+        if self.has_tree == 1 {
+            nearest_hit_in_tree(self.rung, ray, self.nodes, spheres)
+        } else {
+            nearest_hit_in(self.rung, ray, spheres, 0, u32::MAX)
+        }
+    }
+
+    #[inline]
+    fn is_occluded(&self, ray: &Ray, spheres: &MovingSpheres<'_>) -> bool {
+        if self.has_tree == 1 {
+            is_occluded_in_tree(self.rung, ray, self.nodes, spheres)
+        } else {
+            is_occluded(self.rung, ray, spheres)
+        }
+    }
+}
