@@ -159,6 +159,11 @@ struct Item {
 }
 
 impl Item {
+    const NONE: Self = Self {
+        low: Vec4::ZERO,
+        high: Vec4::ZERO,
+    };
+
     fn new(index: u32, bounds: Bounds) -> Self {
         Self {
             low: bounds.low.truncate().extend(f32::from_bits(index)),
@@ -406,11 +411,7 @@ fn share_out<'a>(items: &'a mut [Item], places: usize, parts: &mut Vec<Part<'a>>
         parts.push(Part { items, bounds });
         return;
     }
-    let axis = widest_axis(items);
-    items.sort_unstable_by(|a, b| {
-        let order = a.middle()[axis].total_cmp(&b.middle()[axis]);
-        order.then(a.index().cmp(&b.index()))
-    });
+    sort_by_middle(items, widest_axis(items));
     let mut right = [0.0; FULL];
     let mut bounds = Bounds::EMPTY;
     for at in (1..count).rev() {
@@ -437,12 +438,35 @@ fn share_out<'a>(items: &'a mut [Item], places: usize, parts: &mut Vec<Part<'a>>
     share_out(right, places - of_left, parts);
 }
 
-fn widest_axis(items: &[Item]) -> usize {
-    let (mut low, mut high) = (Vec4::MAX, Vec4::MIN);
-    for item in items {
-        low = low.min(item.middle());
-        high = high.max(item.middle());
+/// Sorts at most [`FULL`] items by their middles along an axis.
+fn sort_by_middle(items: &mut [Item], axis: usize) {
+    let count = items.len();
+    let mut keys = [0_u64; FULL];
+    let mut copy = [Item::NONE; FULL];
+    copy[..count].copy_from_slice(items);
+    for (at, (key, item)) in keys.iter_mut().zip(items.iter()).enumerate() {
+        // In the order of the floats, negative ones too.
+        let bits = (item.low[axis] + item.high[axis]).to_bits();
+        let flip = (bits.cast_signed() >> 31).cast_unsigned() | 1 << 31;
+        *key = u64::from(bits ^ flip) << 32 | at as u64;
     }
+    keys[..count].sort_unstable();
+    for (item, key) in items.iter_mut().zip(keys) {
+        *item = copy[(key & 0xffff_ffff) as usize];
+    }
+}
+
+/// The smallest and the largest of their middles.
+fn range_of_middles(items: &[Item]) -> (Vec4, Vec4) {
+    items
+        .iter()
+        .fold((Vec4::MAX, Vec4::MIN), |(low, high), item| {
+            (low.min(item.middle()), high.max(item.middle()))
+        })
+}
+
+fn widest_axis(items: &[Item]) -> usize {
+    let (low, high) = range_of_middles(items);
     (high - low).truncate().max_position()
 }
 
@@ -496,20 +520,21 @@ fn split(part: Part<'_>, depth: usize) -> (Part<'_>, Part<'_>) {
 /// Where the middles of items fall: the same arithmetic for all that ask.
 #[derive(Clone, Copy)]
 struct Places {
-    low: Vec4,
-    scale: Vec4,
+    axis: usize,
+    low: f32,
+    scale: f32,
 }
 
 impl Places {
-    fn bins(&self, item: &Item) -> Vec4 {
-        (item.middle() - self.low) * self.scale
+    #[inline]
+    fn bin(&self, item: &Item) -> f32 {
+        (item.low[self.axis] + item.high[self.axis] - self.low) * self.scale
     }
 }
 
 /// A split, and what it makes.
 struct Split {
     places: Places,
-    axis: usize,
     bin: usize,
     count: usize,
     left: Bounds,
@@ -520,38 +545,38 @@ impl Split {
     /// Puts the items of the left side first; says how many.
     fn partition(&self, items: &mut [Item]) -> usize {
         let end = self.bin as f32;
-        let is_left = |item: &Item| self.places.bins(item)[self.axis] < end;
+        let is_left = |item: &Item| self.places.bin(item) < end;
         if items.len() >= SHARED {
             return partition_shared(items, is_left);
         }
-        let (mut first, mut last) = (0, items.len());
-        loop {
-            while first < last && is_left(&items[first]) {
-                first += 1;
-            }
-            while first < last && !is_left(&items[last - 1]) {
-                last -= 1;
-            }
-            if first >= last {
-                return first;
-            }
-            items.swap(first, last - 1);
-            first += 1;
-            last -= 1;
-        }
+        partition(items, is_left)
     }
+}
+
+/// Puts the items of the left side first; says how many. Without branches, which no processor could foretell.
+fn partition(items: &mut [Item], is_left: impl Fn(&Item) -> bool) -> usize {
+    let mut count = 0;
+    for at in 0..items.len() {
+        let item = items[at];
+        items[at] = items[count];
+        items[count] = item;
+        count += usize::from(is_left(&item));
+    }
+    count
 }
 
 /// As a partition in place, by many threads and through a copy.
 fn partition_shared(items: &mut [Item], is_left: impl Fn(&Item) -> bool + Sync) -> usize {
-    let parts: Vec<(Vec<Item>, Vec<Item>)> = items
-        .par_chunks(GRAIN)
-        .map(|chunk| chunk.iter().partition(|item| is_left(item)))
+    let mut sorted = items.to_vec();
+    let counts: Vec<usize> = sorted
+        .par_chunks_mut(GRAIN)
+        .map(|chunk| partition(chunk, &is_left))
         .collect();
-    let count = parts.iter().map(|(left, _)| left.len()).sum();
+    let count = counts.iter().sum();
     let (mut left, mut right) = items.split_at_mut(count);
-    let mut copies = Vec::with_capacity(2 * parts.len());
-    for (of_left, of_right) in &parts {
+    let mut copies = Vec::with_capacity(2 * counts.len());
+    for (chunk, count) in sorted.chunks(GRAIN).zip(counts) {
+        let (of_left, of_right) = chunk.split_at(count);
         let (here, rest) = left.split_at_mut(of_left.len());
         copies.push((here, of_left));
         left = rest;
@@ -590,58 +615,46 @@ impl Bin {
     }
 }
 
-type Bins<const N: usize> = [[Bin; N]; 3];
-
-fn bins_of<const N: usize>(items: &[Item], places: &Places) -> Bins<N> {
-    let mut bins = [[Bin::EMPTY; N]; 3];
+fn bins_of<const N: usize>(items: &[Item], places: &Places) -> [Bin; N] {
+    let mut bins = [Bin::EMPTY; N];
     for item in items {
-        let at = places.bins(item);
-        for (axis, bins) in bins.iter_mut().enumerate() {
-            let bin = &mut bins[(at[axis] as usize).min(N - 1)];
-            bin.bounds = bin.bounds.with(item.bounds());
-            bin.count += 1;
-        }
+        let bin = &mut bins[(places.bin(item) as usize).min(N - 1)];
+        bin.bounds = bin.bounds.with(item.bounds());
+        bin.count += 1;
     }
     bins
 }
 
-/// The cheapest split between bins; `None` if all are in one place.
+/// The cheapest split between bins along the axis on which the middles are farthest apart; `None` if all are in
+/// one place.
 fn best_split<const N: usize>(items: &[Item]) -> Option<Split> {
-    let of_middles = |items: &[Item]| {
-        items
-            .iter()
-            .fold((Vec4::MAX, Vec4::MIN), |(low, high), item| {
-                (low.min(item.middle()), high.max(item.middle()))
-            })
-    };
     let is_shared = items.len() >= SHARED;
     let (low, high) = if is_shared {
-        items.par_chunks(GRAIN).map(of_middles).reduce(
+        items.par_chunks(GRAIN).map(range_of_middles).reduce(
             || (Vec4::MAX, Vec4::MIN),
             |a, b| (a.0.min(b.0), a.1.max(b.1)),
         )
     } else {
-        of_middles(items)
+        range_of_middles(items)
     };
-    let width = high - low;
-    // An axis without width has all in its first bin.
-    let scale = |width: f32| {
-        let scale = N as f32 * (1.0 - 1e-6) / width;
-        if scale.is_finite() { scale } else { 0.0 }
-    };
+    let width = (high - low).truncate();
+    let axis = width.max_position();
+    let scale = N as f32 * (1.0 - 1e-6) / width[axis];
+    if !scale.is_finite() {
+        return None;
+    }
     let places = Places {
-        low,
-        scale: Vec4::new(scale(width.x), scale(width.y), scale(width.z), 0.0),
+        axis,
+        low: low[axis],
+        scale,
     };
-    let bins: Bins<N> = if is_shared {
+    let bins: [Bin; N] = if is_shared {
         let bins = items.par_chunks(GRAIN).map(|chunk| bins_of(chunk, &places));
         bins.reduce(
-            || [[Bin::EMPTY; N]; 3],
+            || [Bin::EMPTY; N],
             |mut all, bins| {
-                for (all, bins) in all.iter_mut().zip(bins) {
-                    for (all, bin) in all.iter_mut().zip(bins) {
-                        *all = all.with(bin);
-                    }
+                for (all, bin) in all.iter_mut().zip(bins) {
+                    *all = all.with(bin);
                 }
                 all
             },
@@ -650,30 +663,27 @@ fn best_split<const N: usize>(items: &[Item]) -> Option<Split> {
         bins_of(items, &places)
     };
 
+    let mut right = [Bin::EMPTY; N];
+    let mut sum = Bin::EMPTY;
+    for at in (1..N).rev() {
+        sum = sum.with(bins[at]);
+        right[at] = sum;
+    }
     let mut best: Option<Split> = None;
     let mut cheapest = f32::MAX;
-    for (axis, bins) in bins.iter().enumerate() {
-        let mut right = [Bin::EMPTY; N];
-        let mut sum = Bin::EMPTY;
-        for at in (1..N).rev() {
-            sum = sum.with(bins[at]);
-            right[at] = sum;
-        }
-        let mut left = Bin::EMPTY;
-        for at in 1..N {
-            left = left.with(bins[at - 1]);
-            let cost = left.cost() + right[at].cost();
-            if left.count > 0 && right[at].count > 0 && cost < cheapest {
-                cheapest = cost;
-                best = Some(Split {
-                    places,
-                    axis,
-                    bin: at,
-                    count: left.count,
-                    left: left.bounds,
-                    right: right[at].bounds,
-                });
-            }
+    let mut left = Bin::EMPTY;
+    for at in 1..N {
+        left = left.with(bins[at - 1]);
+        let cost = left.cost() + right[at].cost();
+        if left.count > 0 && right[at].count > 0 && cost < cheapest {
+            cheapest = cost;
+            best = Some(Split {
+                places,
+                bin: at,
+                count: left.count,
+                left: left.bounds,
+                right: right[at].bounds,
+            });
         }
     }
     best
@@ -700,20 +710,22 @@ fn places(parts: &[Part<'_>], bounds: &Bounds) -> [usize; Node::WIDTH] {
         }
     }
     let mut places = [0; Node::WIDTH];
-    let (mut is_placed, mut is_taken) = ([false; Node::WIDTH], [false; Node::WIDTH]);
     for _ in 0..parts.len() {
-        let mut best = (f32::MIN, 0, 0);
-        for child in (0..parts.len()).filter(|child| !is_placed[*child]) {
-            for place in (0..Node::WIDTH).filter(|place| !is_taken[*place]) {
-                if gains[child][place] > best.0 {
-                    best = (gains[child][place], child, place);
-                }
-            }
-        }
-        let (_, child, place) = best;
+        let best = gains[..parts.len()]
+            .iter()
+            .map(|gains| gains.iter().copied().fold(f32::NEG_INFINITY, f32::max))
+            .enumerate()
+            .fold((0, f32::NEG_INFINITY), |best, (child, gain)| {
+                if gain > best.1 { (child, gain) } else { best }
+            });
+        let child = best.0;
+        let place = gains[child].iter().position(|gain| *gain == best.1);
+        let place = place.unwrap_or_default();
         places[child] = place;
-        is_placed[child] = true;
-        is_taken[place] = true;
+        gains[child] = [f32::NEG_INFINITY; Node::WIDTH];
+        for gains in &mut gains {
+            gains[place] = f32::NEG_INFINITY;
+        }
     }
     places
 }
@@ -755,8 +767,13 @@ impl Grid {
             let per_step = f64::from_bits((1023 + 127 - u64::from(self.exponents[axis])) << 52);
             (f64::from(x) - f64::from(self.corner[axis])) * per_step
         };
-        let low = |axis| along(axis, bounds.low[axis]).floor().clamp(0.0, 255.0) as u32;
-        let high = |axis| along(axis, bounds.high[axis]).ceil().clamp(0.0, 255.0) as u32;
+        // Casts cut what is below zero, and the fraction.
+        let low = |axis| (along(axis, bounds.low[axis]) as u32).min(255);
+        let high = |axis| {
+            let high = along(axis, bounds.high[axis]);
+            let whole = high as u32;
+            (whole + u32::from(f64::from(whole) < high)).min(255)
+        };
         put_sides([0, 1, 2].map(low), [0, 1, 2].map(high), place, node);
     }
 }
