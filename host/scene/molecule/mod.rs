@@ -5,7 +5,6 @@ pub mod elements;
 pub mod pdb;
 pub mod xyz;
 
-use std::collections::BTreeMap;
 use std::path::Path;
 
 use glam::Vec3;
@@ -52,7 +51,8 @@ pub fn load(path: &Path) -> Result<World> {
 #[must_use]
 pub fn world(atoms: &[Atom]) -> World {
     let mut world = World::default();
-    let mut ids = BTreeMap::new();
+    // Few, so that looking through them is fastest.
+    let mut ids: Vec<(&str, u32)> = Vec::new();
     let unknown = atoms
         .iter()
         .filter(|atom| atom.element.symbol == elements::UNKNOWN.symbol)
@@ -64,9 +64,15 @@ pub fn world(atoms: &[Atom]) -> World {
         );
     }
     for atom in atoms {
-        let id = *ids
-            .entry(atom.element.symbol)
-            .or_insert_with(|| world.add_material(Material::diffuse(linear(atom.element.color))));
+        let element = atom.element;
+        let known = ids.iter().find(|(symbol, _)| *symbol == element.symbol);
+        let id = if let Some((_, id)) = known {
+            *id
+        } else {
+            let id = world.add_material(Material::diffuse(linear(element.color)));
+            ids.push((element.symbol, id));
+            id
+        };
         world.add(Sphere::new(atom.position, atom.element.radius), id);
     }
     world

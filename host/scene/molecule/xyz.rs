@@ -5,6 +5,7 @@
 //! "extended XYZ" is honoured as far as element and position come first, as they do by default.
 
 use glam::Vec3;
+use rayon::prelude::*;
 
 use super::elements::{self, Element};
 use super::{Atom, WrongLine};
@@ -17,8 +18,7 @@ use crate::scene::MAX_LENGTH;
 /// The first line that is wrong.
 pub fn parse(text: &str) -> Result<Vec<Atom>, WrongLine> {
     let text = text.trim_start_matches('\u{feff}');
-    let mut lines = text.lines().enumerate();
-    let (_, first) = lines.next().unwrap_or((0, ""));
+    let (first, rest) = text.split_once('\n').unwrap_or((text, ""));
     let count: usize = first.trim().parse().map_err(|_| {
         WrongLine::new(
             0,
@@ -35,8 +35,8 @@ pub fn parse(text: &str) -> Result<Vec<Atom>, WrongLine> {
             "give at least one atom",
         ));
     }
-    if let Some((_, comment)) = lines.next()
-        && let Some(properties) = comment.split("Properties=").nth(1)
+    let (comment, rest) = rest.split_once('\n').unwrap_or((rest, ""));
+    if let Some(properties) = comment.split("Properties=").nth(1)
         && !properties
             .trim_start_matches('"')
             .starts_with("species:S:1:pos:R:3")
@@ -49,40 +49,31 @@ pub fn parse(text: &str) -> Result<Vec<Atom>, WrongLine> {
         ));
     }
 
-    let mut atoms = Vec::new();
+    let (blocks, lines) = blocks(rest, count);
+    let read: Vec<Block> = blocks
+        .into_par_iter()
+        .map(|(before, block)| read_block(FIRST_ATOM + before, block))
+        .collect();
+    let mut atoms = Vec::with_capacity(read.iter().map(|block| block.atoms.len()).sum());
     let mut dummies = 0;
-    let mut last = 1;
-    for (number, line) in lines.take(count) {
-        last = number;
-        let mut fields = line.split_whitespace();
-        let Some(symbol) = fields.next() else {
-            return Err(missing(number, count, number - 2));
-        };
-        let mut coordinates = [0.0; 3];
-        for coordinate in &mut coordinates {
-            *coordinate = fields.next().and_then(number_of).ok_or_else(|| {
-                WrongLine::new(
-                    number,
+    for block in read {
+        atoms.extend(block.atoms);
+        dummies += block.dummies;
+        match block.wrong {
+            None => {}
+            Some((line, Wrong::Blank)) => return Err(missing(line, count, line - FIRST_ATOM)),
+            Some((line, Wrong::Coordinate)) => {
+                return Err(WrongLine::new(
+                    line,
                     "an atom needs an element and three coordinates",
                     "a coordinate is missing, no number, or too large",
                     "write lines like: C 0.0 1.2 -3.4",
-                )
-            })?;
-        }
-        match element(symbol) {
-            Some(element) => atoms.push(Atom {
-                position: Vec3::from_array(coordinates),
-                element,
-            }),
-            None if matches!(symbol, "X" | "x" | "Xx" | "XX" | "0") => dummies += 1,
-            None => atoms.push(Atom {
-                position: Vec3::from_array(coordinates),
-                element: &elements::UNKNOWN,
-            }),
+                ));
+            }
         }
     }
-    if atoms.len() + dummies < count {
-        return Err(missing(last, count, atoms.len() + dummies));
+    if lines < count {
+        return Err(missing(FIRST_ATOM + lines - 1, count, lines));
     }
     if dummies > 0 {
         tracing::warn!("{dummies} dummy atoms are left out");
@@ -98,6 +89,79 @@ pub fn parse(text: &str) -> Result<Vec<Atom>, WrongLine> {
     Ok(atoms)
 }
 
+/// The line of the first atom, counted from zero.
+const FIRST_ATOM: usize = 2;
+/// Bytes that a thread reads at once.
+const BLOCK: usize = 1 << 18;
+
+/// The first `count` lines, or all that there are, in blocks of whole lines, with how many come before
+/// each; and how many there are.
+fn blocks(text: &str, count: usize) -> (Vec<(usize, &str)>, usize) {
+    let mut blocks = Vec::new();
+    let (mut rest, mut before) = (text, 0);
+    while before < count && !rest.is_empty() {
+        let end = rest.as_bytes()[BLOCK.min(rest.len())..]
+            .iter()
+            .position(|byte| *byte == b'\n')
+            .map_or(rest.len(), |at| BLOCK + at + 1);
+        let mut block = &rest[..end];
+        let mut lines = block.bytes().filter(|byte| *byte == b'\n').count();
+        lines += usize::from(!block.ends_with('\n'));
+        if lines > count - before {
+            lines = count - before;
+            block = &block[..block.split_inclusive('\n').take(lines).map(str::len).sum()];
+        }
+        blocks.push((before, block));
+        before += lines;
+        rest = &rest[end..];
+    }
+    (blocks, before)
+}
+
+/// What some lines hold.
+#[derive(Default)]
+struct Block {
+    atoms: Vec<Atom>,
+    dummies: usize,
+    /// The first line that is wrong, after which nothing was read.
+    wrong: Option<(usize, Wrong)>,
+}
+
+enum Wrong {
+    Blank,
+    Coordinate,
+}
+
+/// Reads lines, the first of which is line `first` of the file.
+fn read_block(first: usize, text: &str) -> Block {
+    let mut block = Block::default();
+    for (number, line) in text.lines().enumerate() {
+        let mut fields = line.split_whitespace();
+        let Some(symbol) = fields.next() else {
+            block.wrong = Some((first + number, Wrong::Blank));
+            break;
+        };
+        let mut coordinate = || fields.next().and_then(number_of);
+        let (Some(x), Some(y), Some(z)) = (coordinate(), coordinate(), coordinate()) else {
+            block.wrong = Some((first + number, Wrong::Coordinate));
+            break;
+        };
+        let element = match element(symbol) {
+            Some(element) => element,
+            None if matches!(symbol, "X" | "x" | "Xx" | "XX" | "0") => {
+                block.dummies += 1;
+                continue;
+            }
+            None => &elements::UNKNOWN,
+        };
+        block.atoms.push(Atom {
+            position: Vec3::new(x, y, z),
+            element,
+        });
+    }
+    block
+}
+
 fn missing(line: usize, expected: usize, found: usize) -> WrongLine {
     WrongLine::new(
         line,
@@ -109,10 +173,9 @@ fn missing(line: usize, expected: usize, found: usize) -> WrongLine {
 
 /// A number that is not too large for a scene; Fortran's `1.0D+00` counts as one.
 fn number_of(text: &str) -> Option<f32> {
-    let plain = text.replace(['D', 'd'], "e");
-    plain
-        .parse()
-        .ok()
+    let plain = |text: &str| text.parse().ok();
+    plain(text)
+        .or_else(|| plain(&text.replace(['D', 'd'], "e")))
         .filter(|value: &f32| value.abs() <= MAX_LENGTH)
 }
 
@@ -149,6 +212,26 @@ mod tests {
         let symbols: Vec<&str> = atoms.iter().map(|atom| atom.element.symbol).collect();
         assert_eq!(symbols, ["C", "Cl", "Fe", "O"]);
         assert_eq!(atoms[2].position.x, 2.0);
+    }
+
+    #[test]
+    fn blocks_are_read_as_one() {
+        let count = 40_000;
+        let mut text = format!("{count}\r\n\r\n");
+        for atom in 0..count {
+            text += &format!("H {atom} 0 1.5\r\n");
+        }
+        assert!(text.len() > 2 * BLOCK);
+        text += "1\nthe next frame\nnone";
+        let atoms = parse(&text).expect("atoms");
+        assert_eq!(atoms.len(), count);
+        for (index, atom) in atoms.iter().enumerate() {
+            assert_eq!(atom.position.x, index as f32);
+        }
+        let wrong = text.replace("H 39990 0", "H 39990 none");
+        assert_eq!(parse(&wrong).expect_err("a word").line, 39_992);
+        let promise = text.replacen("40000", "40004", 1);
+        assert_eq!(parse(&promise).expect_err("a short line").line, 40_002);
     }
 
     #[test]
