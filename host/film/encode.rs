@@ -8,7 +8,6 @@ use spherule_kernel::integrate::luminance;
 use spherule_kernel::{Pixel, Shading};
 
 use super::Image;
-use crate::scene::Develop;
 use crate::scene::surroundings::Tonemap;
 
 impl Image {
@@ -26,8 +25,15 @@ impl Image {
             .par_chunks_mut(3 << 12)
             .zip(self.pixels.par_chunks(1 << 12))
             .for_each(|(bytes, pixels)| {
+                let curve = Curve::get();
+                // Neighbours often have one colour.
+                let mut last = Pixel::default();
+                let mut encoded = encoder.encode_bytes(curve, &last);
                 for (bytes, pixel) in bytes.chunks_exact_mut(3).zip(pixels) {
-                    bytes.copy_from_slice(&encoder.encode_bytes(pixel));
+                    if *pixel != last {
+                        (last, encoded) = (*pixel, encoder.encode_bytes(curve, pixel));
+                    }
+                    bytes.copy_from_slice(&encoded);
                 }
             });
         bytes
@@ -77,7 +83,9 @@ impl Image {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Encoder {
     shading: Shading,
-    develop: Develop,
+    /// What light is multiplied by.
+    exposure: f32,
+    tonemap: Tonemap,
     near: f32,
     far: f32,
 }
@@ -87,7 +95,8 @@ impl Encoder {
         let (near, far) = image.depth_range().unwrap_or((0.0, 0.0));
         Self {
             shading: image.shading,
-            develop: image.develop,
+            exposure: image.develop.exposure.exp2(),
+            tonemap: image.develop.tonemap,
             near,
             far,
         }
@@ -104,15 +113,30 @@ impl Encoder {
     }
 
     /// The pixel's channels as bytes, rounded to nearest; a NaN becomes 0.
-    fn encode_bytes(&self, pixel: &Pixel) -> [u8; 3] {
+    #[inline]
+    fn encode_bytes(&self, curve: &Curve, pixel: &Pixel) -> [u8; 3] {
+        let byte = |channel| curve.byte(channel);
         match self.shading {
-            Shading::Lit => develop(self.develop, pixel.color())
-                .to_array()
-                .map(srgb_byte),
+            Shading::Lit => self.develop(pixel.color()).to_array().map(byte),
             shading if pixel.is_hit() && shading.is_data() => {
                 self.encode(pixel).map(|value| (value * 255.0 + 0.5) as u8)
             }
-            _ => pixel.color().to_array().map(srgb_byte),
+            _ => pixel.color().to_array().map(byte),
+        }
+    }
+
+    /// Exposes light, and bends what is beyond the screen's white as the curve says.
+    #[inline]
+    fn develop(&self, light: Vec3) -> Vec3 {
+        let light = light * self.exposure;
+        match self.tonemap {
+            Tonemap::Clamp => light,
+            Tonemap::Reinhard => light / (1.0 + luminance(light)),
+            Tonemap::Aces => {
+                let curve = |x: f32| (x * (2.51 * x + 0.03)) / (x * (2.43 * x + 0.59) + 0.14);
+                // The fit is of a curve with its own exposure.
+                (light * 0.6).map(curve)
+            }
         }
     }
 
@@ -132,22 +156,8 @@ impl Encoder {
             shading if shading.is_data() && pixel.is_hit() => {
                 color.map(|channel| channel.clamp(0.0, 1.0))
             }
-            Shading::Lit => develop(self.develop, pixel.color()).to_array().map(srgb),
+            Shading::Lit => self.develop(pixel.color()).to_array().map(srgb),
             _ => color.map(srgb),
-        }
-    }
-}
-
-/// Exposes light, and bends what is beyond the screen's white as the curve says.
-fn develop(how: Develop, light: Vec3) -> Vec3 {
-    let light = light * how.exposure.exp2();
-    match how.tonemap {
-        Tonemap::Clamp => light,
-        Tonemap::Reinhard => light / (1.0 + luminance(light)),
-        Tonemap::Aces => {
-            let curve = |x: f32| (x * (2.51 * x + 0.03)) / (x * (2.43 * x + 0.59) + 0.14);
-            // The fit is of a curve with its own exposure.
-            (light * 0.6).map(curve)
         }
     }
 }
@@ -165,11 +175,7 @@ pub fn srgb(linear: f32) -> f32 {
 
 /// [`srgb`] as a byte, rounded to nearest, by a table: the power is what takes longest about a small
 /// scene's image.
-fn srgb_byte(linear: f32) -> u8 {
-    static CURVE: LazyLock<Curve> = LazyLock::new(Curve::new);
-    CURVE.byte(linear)
-}
-
+///
 /// For each byte the smallest number that has it, and for numbers of the same leading bits the byte of the
 /// smallest among them.
 struct Curve {
@@ -178,8 +184,13 @@ struct Curve {
 }
 
 impl Curve {
-    /// Bits that are not looked at.
-    const DROPPED: u32 = 15;
+    /// Bits that are not looked at: the table takes 8 KiB.
+    const DROPPED: u32 = 17;
+
+    fn get() -> &'static Self {
+        static CURVE: LazyLock<Curve> = LazyLock::new(Curve::new);
+        &CURVE
+    }
 
     fn new() -> Self {
         let of = |linear: f32| (srgb(linear) * 255.0 + 0.5) as u8;
@@ -204,6 +215,7 @@ impl Curve {
         Self { smallest, first }
     }
 
+    #[inline]
     fn byte(&self, linear: f32) -> u8 {
         // A NaN is not above zero.
         let linear = if linear > 0.0 { linear.min(1.0) } else { 0.0 };
@@ -242,14 +254,18 @@ mod tests {
         let mut linear = 0.0_f32;
         while linear < 1.1 {
             assert_eq!(
-                srgb_byte(linear),
+                Curve::get().byte(linear),
                 (srgb(linear) * 255.0 + 0.5) as u8,
                 "{linear}"
             );
             linear = (linear * 1.000_01).max(linear + 1e-6);
         }
         for odd in [f32::NAN, -1.0, f32::INFINITY, f32::MIN_POSITIVE, -0.0] {
-            assert_eq!(srgb_byte(odd), (srgb(odd) * 255.0 + 0.5) as u8, "{odd}");
+            assert_eq!(
+                Curve::get().byte(odd),
+                (srgb(odd) * 255.0 + 0.5) as u8,
+                "{odd}"
+            );
         }
     }
 

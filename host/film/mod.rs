@@ -12,6 +12,7 @@ pub mod encode;
 pub mod file;
 pub mod flip;
 
+use bytemuck::Zeroable;
 use spherule_kernel::{Pixel, Shading};
 
 use crate::error::{Error, Result};
@@ -30,12 +31,13 @@ pub struct Image {
     pub develop: Develop,
 }
 
-/// Room for what belongs to each pixel of an image.
+/// Room for what belongs to each pixel of an image, all of it zero. The system gives memory when it is first
+/// written, and so to the threads that do.
 ///
 /// # Errors
 ///
 /// [`Error::OutOfMemory`] if the host has not that much.
-pub fn allocate<T: Clone + Default>(width: u32, height: u32) -> Result<Vec<T>> {
+pub fn allocate<T: Zeroable>(width: u32, height: u32) -> Result<Vec<T>> {
     let failed = || Error::OutOfMemory {
         device: "the host".into(),
         during: format!(
@@ -44,10 +46,8 @@ pub fn allocate<T: Clone + Default>(width: u32, height: u32) -> Result<Vec<T>> {
         ),
     };
     let count = usize::try_from(u64::from(width) * u64::from(height)).map_err(|_| failed())?;
-    let mut pixels = Vec::new();
-    pixels.try_reserve_exact(count).map_err(|_| failed())?;
-    pixels.resize(count, T::default());
-    Ok(pixels)
+    let pixels = bytemuck::allocation::try_zeroed_slice_box(count).map_err(|()| failed())?;
+    Ok(pixels.into_vec())
 }
 
 impl Image {
