@@ -355,11 +355,29 @@ fn the_cpu_path_works_without_any_driver() {
     spherule()
         .env("VK_DRIVER_FILES", "/nonexistent")
         .env("VK_ICD_FILENAMES", "/nonexistent")
-        .args(["render", "scenes/two-spheres.toml", "--size", "16x9", "-o"])
+        .args([
+            "render",
+            "scenes/soft-light.toml",
+            "--size",
+            "320x180",
+            "-o",
+        ])
         .arg(dir.path().join("out.png"))
         .assert()
         .success()
         .stderr(contains("there is no real GPU"));
+}
+
+/// An image that the CPU has done before a GPU is open is done by the CPU.
+#[test]
+fn auto_opens_no_gpu_for_a_small_image() {
+    let dir = temporary();
+    spherule()
+        .args(["render", "scenes/two-spheres.toml", "--size", "16x9", "-o"])
+        .arg(dir.path().join("out.png"))
+        .assert()
+        .success()
+        .stderr(contains("done before a GPU would be open"));
 }
 
 #[test]

@@ -56,7 +56,7 @@ pub(super) struct RenderArguments {
     #[arg(long, value_name = "WxH")]
     pub(super) size: Option<Size>,
 
-    /// What renders: auto (a real GPU, else the CPU), gpu (a software one too), cpu, or a part of an adapter's name
+    /// What renders: auto (the CPU for small images and where there is no real GPU, else that), gpu (a software one too), cpu, or a part of an adapter's name
     #[arg(long, value_name = "auto|gpu|cpu|NAME", default_value = "auto")]
     pub(super) device: DeviceChoice,
 

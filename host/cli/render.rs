@@ -16,7 +16,7 @@ use crate::error::{Error, Result, SceneError};
 use crate::film::Image;
 use crate::film::compare::{Comparison, Tolerance};
 use crate::render::paths::{Reached, StoppedBy};
-use crate::render::{Rendered, Settings, render};
+use crate::render::{Rendered, Settings, estimate, render};
 use crate::scene::Scene;
 use crate::scene::tree::Acceleration;
 
@@ -89,7 +89,16 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<ExitCode> {
     let load = started.elapsed();
 
     let opening = Instant::now();
-    let (mut device, why) = Device::open(&arguments.device)?;
+    let is_brief = || {
+        let threads = rayon::current_num_threads();
+        estimate::is_brief(&scene, arguments.shade.into(), arguments.effects, threads)
+    };
+    let (mut device, why) =
+        if arguments.device == DeviceChoice::Auto && !arguments.check && is_brief() {
+            (Device::Cpu, "done before a GPU would be open".into())
+        } else {
+            Device::open(&arguments.device)?
+        };
     let opening = opening.elapsed();
     // Opened before the work, so that a check that cannot be is known at once.
     let other = match (&device, arguments.check) {

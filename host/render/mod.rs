@@ -6,12 +6,14 @@
 //! | [`packet`] | camera rays on the CPU, a square of pixels at once |
 //! | [`gpu`] | the kernel's entry point over tiles, within a device's limits |
 //! | [`paths`] | light paths, for scenes that call for effects |
+//! | [`estimate`] | whether a GPU is worth opening for an image |
 //! | [`cost`] | the time of a frame by pipelines of more or fewer effects |
 //! | [`pace`] | how much work one launch gets |
 //! | `tiles` | how an image is cut within a device's limits |
 
 pub mod cost;
 pub mod cpu;
+pub mod estimate;
 pub mod gpu;
 pub mod pace;
 pub mod packet;
