@@ -98,8 +98,18 @@ def mitsuba(cache):
     return [sys.executable, HERE / "mitsuba3.py"]
 
 
+def cuda(name):
+    def prepare(cache):
+        on_path("nvcc")
+        out = cache / f"cuda-{name}"
+        call("nvcc", "-O3", "-std=c++17", "-arch=native", "-o", out, HERE / f"cuda/{name}.cu")
+        return [out]
+
+    return prepare
+
+
 # Name: how to prepare it, and the arguments that tell it from others of the same program.
-PEERS = {
+ON_CPU = {
     "embree4-points": (embree4, ["--geometry", "points"]),
     "embree4-callback": (embree4, ["--geometry", "callback"]),
     "embree3-points": (embree3, ["--geometry", "points"]),
@@ -111,6 +121,11 @@ PEERS = {
     "mitsuba": (mitsuba, []),
     "tachyon": (program("tachyon"), []),
     "povray": (program("povray"), []),
+}
+ON_GPU = {
+    "cuda-tree": (cuda("tree"), []),
+    "cuda-brute-plain": (cuda("brute"), ["--variant", "plain"]),
+    "cuda-brute-tricks": (cuda("brute"), ["--variant", "tricks"]),
 }
 
 

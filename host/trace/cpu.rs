@@ -48,6 +48,18 @@ impl CpuTracer {
         size_of_val(&self.spheres[..]) + size_of_val(&self.nodes[..])
     }
 
+    /// The tree's nodes; none without one.
+    #[must_use]
+    pub fn nodes(&self) -> &[Node] {
+        &self.nodes
+    }
+
+    /// For each sphere in the order of the tree's leaves, its index as it was given; none without a tree.
+    #[must_use]
+    pub fn order(&self) -> &[u32] {
+        &self.order
+    }
+
     /// Finds the nearest hit of each ray; spheres by their indices as they were given. `hits` gets as
     /// long as `rays`.
     pub fn nearest(&self, rung: Rung, rays: &[Ray], hits: &mut Vec<Hit>) {

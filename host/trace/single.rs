@@ -6,7 +6,7 @@
 //! are tested side by side, too; without it the kernel's walk does that.
 
 use glam::{Mat4, Vec3, Vec4};
-use spherule_kernel::candidates::SLACK;
+use spherule_kernel::candidates::{SLACK, power_of_two_under};
 use spherule_kernel::nearest::{MovingSpheres, Spheres};
 use spherule_kernel::precision::intersect;
 use spherule_kernel::traversal::Traversal;
@@ -137,8 +137,7 @@ impl Search {
     #[inline(always)]
     fn of(intersect: fn(Sphere, &Ray) -> f32, ray: &Ray) -> Self {
         let d = ray.direction;
-        let largest = d.abs().max_element().max(f32::MIN_POSITIVE);
-        let direction = d * f32::from_bits(0x7f00_0000 - (largest.to_bits() & 0x7f80_0000));
+        let direction = d * power_of_two_under(d);
         Self {
             intersect,
             ray: Ray {

@@ -1,15 +1,17 @@
 //! Brute force at the machine's rate: a test of few operations that tells which spheres a rung must
 //! be asked about. Runs on the GPU and on the CPU.
 //!
-//! Rays of one origin O share o = C − O and c = o·o − r². With |d|² = a and b = o·d the line misses where
-//! b² − a c < 0. In 32-bit floats, u = 2⁻²⁴, b is off by 4u|o||d|, so that b² is by 9u a o·o; c is by
-//! 6u (o·o + r²), and its product and the difference by 3u more: together by 20u a (o·o + r²). What a
-//! rung calls a hit the exact numbers may miss by: textbook by as much, the others by less, as their
-//! modules say. c is therefore taken less by 64u (o·o + r²), and no rung's hit is passed by.
+//! Rays of one origin O share o = C − O and c = o·o − r². With d of unit length and b = o·d the line misses
+//! where b² < c. In 32-bit floats, u = 2⁻²⁴, d is of unit length to within 4u and off its way by 2u, so that b is off by
+//! 6u|o| and b² by 13u o·o, and c counts for 8u too much or too little; c is off by 6u (o·o + r²), and the
+//! difference by u more: together 28u (o·o + r²). What a rung calls a hit the exact numbers may miss by:
+//! textbook by 24u (o·o + r²), the others by less, as their modules say. c is therefore taken less by 64u (o·o + r²),
+//! and no rung's hit is passed by.
 
 use glam::{UVec4, Vec3, Vec4};
 
 use crate::sphere::Sphere;
+use crate::surface::unit;
 
 /// 64u.
 pub const SLACK: f32 = 1.0 / (1 << 18) as f32;
@@ -49,13 +51,28 @@ impl Shared {
         Self(Vec4::new(0.0, 0.0, 0.0, 1.0))
     }
 
-    /// Negative where a line along `direction` misses, a being the direction's squared length.
+    /// Negative where a line along `unit`, of unit length, misses.
     #[inline]
     #[must_use]
-    pub fn discriminant(self, direction: Vec3, a: f32) -> f32 {
-        let b = self.0.truncate().dot(direction);
-        b * b - a * self.0.w
+    pub fn discriminant(self, unit: Vec3) -> f32 {
+        let b = self.0.truncate().dot(unit);
+        b * b - self.0.w
     }
+}
+
+/// A direction at unit length, whatever its length; zero for a zero vector.
+#[inline]
+#[must_use]
+pub fn unit_of(direction: Vec3) -> Vec3 {
+    unit(direction * power_of_two_under(direction))
+}
+
+/// The power of two that brings a vector's largest component between 1 and 2.
+#[inline]
+#[must_use]
+pub fn power_of_two_under(vector: Vec3) -> f32 {
+    let largest = vector.abs().max_element().max(f32::MIN_POSITIVE);
+    f32::from_bits(0x7f00_0000 - (largest.to_bits() & 0x7f80_0000))
 }
 
 /// Whether all of four discriminants are negative: their sign bits, in the sign bit.
@@ -75,18 +92,11 @@ pub fn candidates(bits: UVec4) -> u32 {
 /// The bits of four spheres' discriminants.
 #[inline]
 #[must_use]
-pub fn discriminants(
-    direction: Vec3,
-    a: f32,
-    s0: Shared,
-    s1: Shared,
-    s2: Shared,
-    s3: Shared,
-) -> UVec4 {
+pub fn discriminants(unit: Vec3, s0: Shared, s1: Shared, s2: Shared, s3: Shared) -> UVec4 {
     UVec4::new(
-        s0.discriminant(direction, a).to_bits(),
-        s1.discriminant(direction, a).to_bits(),
-        s2.discriminant(direction, a).to_bits(),
-        s3.discriminant(direction, a).to_bits(),
+        s0.discriminant(unit).to_bits(),
+        s1.discriminant(unit).to_bits(),
+        s2.discriminant(unit).to_bits(),
+        s3.discriminant(unit).to_bits(),
     )
 }

@@ -11,7 +11,7 @@ use spirv_std::spirv;
 use crate::canary::{Operands, Outcome, sing};
 #[cfg(any(not(target_arch = "spirv"), feature = "f64"))]
 use crate::canary::{WideOutcome, sing_wide};
-use crate::candidates::{Shared, all_miss, candidates, discriminants};
+use crate::candidates::{Shared, all_miss, candidates, discriminants, unit_of};
 use crate::film::render_pixel;
 use crate::integrate::{Scenery, trace_pixel};
 use crate::nearest::{is_occluded, nearest_hit_in};
@@ -79,22 +79,15 @@ pub fn render_by_tiles(
     #[spirv(workgroup)] tile: &mut [Vec4; TILE],
 ) {
     let thread = local.y * 8 + local.x;
-    let pixel_0 = UVec2::new(group.x * 16 + local.x, group.y * 16 + local.y);
-    let pixel_1 = pixel_0 + UVec2::new(8, 0);
-    let pixel_2 = pixel_0 + UVec2::new(0, 8);
-    let pixel_3 = pixel_0 + UVec2::new(8, 8);
-    let held_0 = pixel_of(pixels, launch, pixel_0);
-    let held_1 = pixel_of(pixels, launch, pixel_1);
-    let held_2 = pixel_of(pixels, launch, pixel_2);
-    let held_3 = pixel_of(pixels, launch, pixel_3);
-    let ray_0 = launch.ray(pixel_0, held_0);
-    let ray_1 = launch.ray(pixel_1, held_1);
-    let ray_2 = launch.ray(pixel_2, held_2);
-    let ray_3 = launch.ray(pixel_3, held_3);
-    let a_0 = ray_0.direction.dot(ray_0.direction);
-    let a_1 = ray_1.direction.dot(ray_1.direction);
-    let a_2 = ray_2.direction.dot(ray_2.direction);
-    let a_3 = ray_3.direction.dot(ray_3.direction);
+    let pixel = UVec2::new(group.x * 16 + local.x, group.y * 16 + local.y);
+    let ray_0 = ray_of(pixels, launch, pixel_of(pixel, 0));
+    let ray_1 = ray_of(pixels, launch, pixel_of(pixel, 1));
+    let ray_2 = ray_of(pixels, launch, pixel_of(pixel, 2));
+    let ray_3 = ray_of(pixels, launch, pixel_of(pixel, 3));
+    let unit_0 = unit_of(ray_0.direction);
+    let unit_1 = unit_of(ray_1.direction);
+    let unit_2 = unit_of(ray_2.direction);
+    let unit_3 = unit_of(ray_3.direction);
     // Only what changes is carried from round to round.
     let mut t_max = Vec4::new(ray_0.t_max, ray_1.t_max, ray_2.t_max, ray_3.t_max);
     let mut found = UVec4::splat(Hit::NONE_SPHERE);
@@ -122,48 +115,57 @@ pub fn render_by_tiles(
         let count = (end - first).min(TILE as u32);
         let mut at = 0;
         while at < count {
-            // SAFETY: `at` is below the tile's size, and both are multiples of four.
+            let here = at as usize;
+            // SAFETY: `at` is below the tile's size, and both are multiples of eight.
             let (s0, s1, s2, s3) = unsafe {
                 (
-                    Shared::from_vec4(*tile.index_unchecked(at as usize)),
-                    Shared::from_vec4(*tile.index_unchecked(at as usize + 1)),
-                    Shared::from_vec4(*tile.index_unchecked(at as usize + 2)),
-                    Shared::from_vec4(*tile.index_unchecked(at as usize + 3)),
+                    Shared::from_vec4(*tile.index_unchecked(here)),
+                    Shared::from_vec4(*tile.index_unchecked(here + 1)),
+                    Shared::from_vec4(*tile.index_unchecked(here + 2)),
+                    Shared::from_vec4(*tile.index_unchecked(here + 3)),
                 )
             };
-            let d0 = discriminants(ray_0.direction, a_0, s0, s1, s2, s3);
-            let d1 = discriminants(ray_1.direction, a_1, s0, s1, s2, s3);
-            let d2 = discriminants(ray_2.direction, a_2, s0, s1, s2, s3);
-            let d3 = discriminants(ray_3.direction, a_3, s0, s1, s2, s3);
-            if (all_miss(d0) & all_miss(d1) & all_miss(d2) & all_miss(d3)) >> 31 == 0 {
-                let mut left = candidates(d0)
-                    | candidates(d1) << 4
-                    | candidates(d2) << 8
-                    | candidates(d3) << 12;
+            // SAFETY: as above.
+            let (s4, s5, s6, s7) = unsafe {
+                (
+                    Shared::from_vec4(*tile.index_unchecked(here + 4)),
+                    Shared::from_vec4(*tile.index_unchecked(here + 5)),
+                    Shared::from_vec4(*tile.index_unchecked(here + 6)),
+                    Shared::from_vec4(*tile.index_unchecked(here + 7)),
+                )
+            };
+            let low_0 = discriminants(unit_0, s0, s1, s2, s3);
+            let low_1 = discriminants(unit_1, s0, s1, s2, s3);
+            let low_2 = discriminants(unit_2, s0, s1, s2, s3);
+            let low_3 = discriminants(unit_3, s0, s1, s2, s3);
+            let high_0 = discriminants(unit_0, s4, s5, s6, s7);
+            let high_1 = discriminants(unit_1, s4, s5, s6, s7);
+            let high_2 = discriminants(unit_2, s4, s5, s6, s7);
+            let high_3 = discriminants(unit_3, s4, s5, s6, s7);
+            let low = all_miss(low_0) & all_miss(low_1) & all_miss(low_2) & all_miss(low_3);
+            let high = all_miss(high_0) & all_miss(high_1) & all_miss(high_2) & all_miss(high_3);
+            if (low & high) >> 31 == 0 {
+                // A byte a ray, a bit a sphere.
+                let mut left = candidates(low_0)
+                    | candidates(high_0) << 4
+                    | candidates(low_1) << 8
+                    | candidates(high_1) << 12
+                    | candidates(low_2) << 16
+                    | candidates(high_2) << 20
+                    | candidates(low_3) << 24
+                    | candidates(high_3) << 28;
                 // The rung's code stands here once, for whichever ray.
                 while left != 0 {
                     let candidate = left.trailing_zeros();
                     left &= left - 1;
-                    let index = first + at + (candidate & 3);
-                    let which = candidate >> 2;
+                    let index = first + at + (candidate & 7);
+                    let which = candidate >> 3;
                     if index < end {
-                        let mut direction = ray_0.direction;
-                        let mut end_t = t_max.x;
-                        if which == 1 {
-                            direction = ray_1.direction;
-                            end_t = t_max.y;
-                        }
-                        if which == 2 {
-                            direction = ray_2.direction;
-                            end_t = t_max.z;
-                        }
-                        if which == 3 {
-                            direction = ray_3.direction;
-                            end_t = t_max.w;
-                        }
+                        let end_t = pick(t_max, which);
                         // SAFETY: `end` is at most the number of spheres.
                         let sphere = unsafe { *spheres.index_unchecked(index as usize) };
-                        let ray = Ray::within(ray_0.origin, direction, ray_0.t_min, end_t);
+                        let mut ray = launch.ray(pixel_of(pixel, which), Pixel::default());
+                        ray.t_max = end_t;
                         let t = intersect(rung, sphere, &ray);
                         if t < end_t {
                             if which == 0 {
@@ -182,70 +184,82 @@ pub fn render_by_tiles(
                     }
                 }
             }
-            at += 4;
+            at += 8;
         }
         first += TILE as u32;
     }
 
-    let place = place_of(pixels, launch, pixel_0);
-    if place < pixels.len() {
-        let hit = Hit {
-            t: t_max.x,
-            sphere: found.x,
-        };
-        let ray = ray_0;
-        pixels[place] = launch.pixel(shading, &ray, hit, spheres, material_ids, materials, held_0);
-    }
-    let place = place_of(pixels, launch, pixel_1);
-    if place < pixels.len() {
-        let hit = Hit {
-            t: t_max.y,
-            sphere: found.y,
-        };
-        let ray = ray_1;
-        pixels[place] = launch.pixel(shading, &ray, hit, spheres, material_ids, materials, held_1);
-    }
-    let place = place_of(pixels, launch, pixel_2);
-    if place < pixels.len() {
-        let hit = Hit {
-            t: t_max.z,
-            sphere: found.z,
-        };
-        let ray = ray_2;
-        pixels[place] = launch.pixel(shading, &ray, hit, spheres, material_ids, materials, held_2);
-    }
-    let place = place_of(pixels, launch, pixel_3);
-    if place < pixels.len() {
-        let hit = Hit {
-            t: t_max.w,
-            sphere: found.w,
-        };
-        let ray = ray_3;
-        pixels[place] = launch.pixel(shading, &ray, hit, spheres, material_ids, materials, held_3);
+    let mut which = 0;
+    while which < 4 {
+        let pixel = pixel_of(pixel, which);
+        let place = place_of(pixels.len(), launch, pixel);
+        if place < pixels.len() {
+            let held = pixels[place];
+            let ray = launch.ray(pixel, held);
+            let mut sphere = found.x;
+            if which == 1 {
+                sphere = found.y;
+            }
+            if which == 2 {
+                sphere = found.z;
+            }
+            if which == 3 {
+                sphere = found.w;
+            }
+            let hit = Hit {
+                t: pick(t_max, which),
+                sphere,
+            };
+            pixels[place] =
+                launch.pixel(shading, &ray, hit, spheres, material_ids, materials, held);
+        }
+        which += 1;
     }
 }
 
-/// Where a pixel of a launch is; the slice's length for one beyond the tile, which is traced for nothing because its
-/// thread must meet the others' barriers.
+/// The ray of a pixel, not farther than what it holds.
 #[inline]
-fn place_of(pixels: &[Pixel], launch: &Launch, pixel: UVec2) -> usize {
-    let is_inside = (pixel.x < launch.tile_size.x) & (pixel.y < launch.tile_size.y);
-    if is_inside {
-        (pixel.y * launch.tile_size.x + pixel.x) as usize
-    } else {
-        pixels.len()
-    }
-}
-
-/// What a pixel of a launch holds.
-#[inline]
-fn pixel_of(pixels: &[Pixel], launch: &Launch, pixel: UVec2) -> Pixel {
-    let place = place_of(pixels, launch, pixel);
+fn ray_of(pixels: &[Pixel], launch: &Launch, pixel: UVec2) -> Ray {
+    let place = place_of(pixels.len(), launch, pixel);
     let mut held = Pixel::default();
     if place < pixels.len() {
         held = pixels[place];
     }
-    held
+    launch.ray(pixel, held)
+}
+
+/// One of the four pixels that a thread has: the others are 8 to the right, below, and both.
+#[inline]
+fn pixel_of(first: UVec2, which: u32) -> UVec2 {
+    first + UVec2::new(8 * (which & 1), 8 * (which >> 1))
+}
+
+/// One of four numbers, without an array in memory.
+#[inline]
+fn pick(numbers: Vec4, which: u32) -> f32 {
+    let mut number = numbers.x;
+    if which == 1 {
+        number = numbers.y;
+    }
+    if which == 2 {
+        number = numbers.z;
+    }
+    if which == 3 {
+        number = numbers.w;
+    }
+    number
+}
+
+/// Where a pixel of a launch is; `len` for one beyond the tile, which is traced for nothing because its
+/// thread must meet the others' barriers.
+#[inline]
+fn place_of(len: usize, launch: &Launch, pixel: UVec2) -> usize {
+    let is_inside = (pixel.x < launch.tile_size.x) & (pixel.y < launch.tile_size.y);
+    if is_inside {
+        (pixel.y * launch.tile_size.x + pixel.x) as usize
+    } else {
+        len
+    }
 }
 
 /// Adds samples to the pixels of a tile, by the effects that the pipeline holds.
