@@ -1,14 +1,19 @@
 //! The tree, the squares of camera rays and the tiles of brute force answer as testing every sphere does.
 
+use spherule::accuracy::cases::catalogue;
+use spherule::accuracy::families::Family;
+use spherule::accuracy::oracle::Intersection;
 use spherule::bench::rays::{Kind, RaySets};
 use spherule::bench::scenes;
 use spherule::bench::verify::verify;
 use spherule::device::{Device, GpuOptions};
 use spherule::kernel::nearest::nearest_hit_in;
-use spherule::kernel::{Rung, Shading};
+use spherule::kernel::tree::{Node, nearest_hit_in_tree};
+use spherule::kernel::{Hit, Ray, Rung, Shading, Sphere};
 use spherule::render::{QUIET, Settings, cpu, whole_image};
 use spherule::scene::tree::Acceleration;
 use spherule::trace::CpuTracer;
+use spherule::trace::single::Single;
 
 mod common;
 use common::{all_adapters, gpus, open, skips};
@@ -35,6 +40,64 @@ fn the_tree_loses_no_hit() {
                 rung.name()
             );
             assert!(verified.rays > 500, "{name}: {verified:?}");
+        }
+    }
+}
+
+/// The hard cases and families among a million spheres: in the tree, by both walks, each ray finds what it finds
+/// without one, and on the certified rung nothing that is farther than its own sphere's exact hit. The first
+/// world is without the spheres of planets' size, which make all boxes wide.
+#[test]
+fn hard_cases_are_hit_in_a_tree_of_a_million() {
+    let (scene, _) = scenes::load("R1M", 16, 16).expect("a scene");
+    let mut samples: Vec<(Ray, Sphere)> = catalogue()
+        .iter()
+        .flat_map(|case| case.samples().collect::<Vec<_>>())
+        .collect();
+    samples.extend(Family::ALL.iter().flat_map(|f| f.sample(11, 40)));
+    for (limit, step) in [(1e4, 3), (Node::MAX_COORDINATE / 4.0, 50)] {
+        let small: Vec<(Ray, Sphere)> = samples
+            .iter()
+            .copied()
+            .filter(|(_, sphere)| {
+                let far = sphere.center().abs().max_element() + sphere.radius().abs();
+                sphere.is_valid() && far < limit
+            })
+            .step_by(step)
+            .collect();
+        assert!(small.len() * step > 500, "{}", small.len());
+        let mut spheres = scene.world.spheres.clone();
+        let first = spheres.len();
+        spheres.extend(small.iter().map(|(_, sphere)| *sphere));
+        let rays: Vec<Ray> = small.iter().map(|(ray, _)| *ray).collect();
+        let tree = CpuTracer::new(&spheres, Acceleration::Tree);
+        let order = tree.order();
+        assert_eq!(order.len(), spheres.len());
+        let sorted: Vec<Sphere> = order.iter().map(|at| spheres[*at as usize]).collect();
+        let (mut found, mut occluded) = (Vec::new(), Vec::new());
+        for rung in Rung::ALL {
+            tree.nearest(rung, &rays, &mut found);
+            tree.occluded(rung, &rays, &mut occluded);
+            let mut truth = vec![Hit::NONE; rays.len()];
+            // Of equally near ones the first in the order of the leaves.
+            let all = Single::new(rung, &[]);
+            all.trace::<false, _>(&rays, &sorted[..], |index, hit| truth[index] = hit);
+            for (index, ray) in rays.iter().enumerate() {
+                let truth = truth[index];
+                let mut given = truth;
+                if truth.is_some() {
+                    given.sphere = order[truth.sphere as usize];
+                }
+                assert_eq!(found[index], given, "{} {ray:?}", rung.name());
+                assert_eq!(occluded[index] == 1, truth.is_some(), "{}", rung.name());
+                let walked = nearest_hit_in_tree(rung.to_u32(), ray, tree.nodes(), &sorted[..]);
+                assert_eq!(walked, truth, "{} {ray:?}", rung.name());
+                let own = &spheres[first + index];
+                let exact = Intersection::of(ray, own).and_then(|exact| exact.nearest(ray));
+                if let (Rung::Certified, Some(exact)) = (rung, exact) {
+                    assert!(truth.t <= exact.next_up(), "{ray:?} {own:?}");
+                }
+            }
         }
     }
 }

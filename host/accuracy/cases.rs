@@ -81,17 +81,18 @@ pub(super) const UPPER: &[Rung] = &[Rung::Compensated, Rung::Double, Rung::Certi
 pub(super) const CERTIFIED: &[Rung] = &[Rung::Certified];
 
 impl Case {
+    /// The rays of the case, each with its sphere.
+    pub fn samples(&self) -> impl Iterator<Item = (Ray, Sphere)> {
+        self.probes.iter().map(|probe| (probe.ray, probe.sphere))
+    }
+
     /// How `rung` does on this case on `device`.
     ///
     /// # Errors
     ///
     /// [`RungRefused`](crate::Error::RungRefused) if the canary objects, and the device's errors.
     pub fn judge(&self, device: &Device, rung: Rung) -> Result<Verdict> {
-        let samples: Vec<(Ray, Sphere)> = self
-            .probes
-            .iter()
-            .map(|probe| (probe.ray, probe.sphere))
-            .collect();
+        let samples: Vec<(Ray, Sphere)> = self.samples().collect();
         let answers = intersect_all(device, rung, &samples)?;
         let mut last = 0.0;
         for (probe, found) in self.probes.iter().zip(answers) {
