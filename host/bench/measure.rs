@@ -135,12 +135,7 @@ pub fn measure(
     let mut builds = Vec::new();
     for _ in 0..plan.rounds.min(3) {
         let started = Instant::now();
-        let tree = tree::grow(
-            spheres,
-            &[],
-            (0.0, 0.0),
-            plan.acceleration.min_spheres(tree::MIN_SPHERES),
-        );
+        let tree = tree::grow_still(spheres, plan.acceleration.min_spheres(tree::MIN_SPHERES));
         if tree.is_some() {
             builds.push(started.elapsed().as_secs_f64());
         }

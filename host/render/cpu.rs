@@ -30,12 +30,7 @@ impl<'a> Prepared<'a> {
     /// Grows the tree.
     #[must_use]
     pub fn new(world: &'a World, acceleration: Acceleration) -> Self {
-        match tree::grow(
-            &world.spheres,
-            &[],
-            (0.0, 0.0),
-            acceleration.min_spheres(MIN_SPHERES),
-        ) {
+        match tree::grow_still(&world.spheres, acceleration.min_spheres(MIN_SPHERES)) {
             Some(tree) => Self {
                 world: Cow::Owned(tree.sort_world(world)),
                 nodes: tree.nodes,

@@ -66,12 +66,7 @@ impl Prepared {
         // All have trees, or none has.
         let grow = |run: &Range<usize>| {
             let spheres = &world.spheres[run.clone()];
-            tree::grow(
-                spheres,
-                &[],
-                (0.0, 0.0),
-                settings.acceleration.min_spheres(MIN_FOR_TREE),
-            )
+            tree::grow_still(spheres, settings.acceleration.min_spheres(MIN_FOR_TREE))
         };
         let trees: Option<Vec<Tree>> = runs.iter().map(grow).collect();
         let parts = runs.iter().enumerate().map(|(index, run)| {

@@ -243,6 +243,12 @@ pub fn grow(
     Some(Tree { nodes, order })
 }
 
+/// [`grow`] over spheres at rest.
+#[must_use]
+pub fn grow_still(spheres: &[Sphere], min_spheres: usize) -> Option<Tree> {
+    grow(spheres, &[], (0.0, 0.0), min_spheres)
+}
+
 fn bounds_of_all(items: &[Item]) -> Bounds {
     if items.len() < SHARED {
         return Bounds::of_all(items);
@@ -811,7 +817,7 @@ mod tests {
 
     impl Grown {
         fn over(world: &World) -> Self {
-            let tree = grow(&world.spheres, &[], (0.0, 0.0), 1).expect("a tree");
+            let tree = grow_still(&world.spheres, 1).expect("a tree");
             Self {
                 world: tree.sort_world(world),
                 nodes: tree.nodes,
@@ -1012,6 +1018,6 @@ mod tests {
     fn a_world_that_is_not_finite_gets_no_tree() {
         let (_, mut world) = worlds().remove(0);
         world.add(Sphere::new(Vec3::NAN, 1.0), 0);
-        assert!(grow(&world.spheres, &[], (0.0, 0.0), 1).is_none());
+        assert!(grow_still(&world.spheres, 1).is_none());
     }
 }

@@ -23,12 +23,7 @@ impl CpuTracer {
     /// Grows the tree.
     #[must_use]
     pub fn new(spheres: &[Sphere], acceleration: Acceleration) -> Self {
-        match tree::grow(
-            spheres,
-            &[],
-            (0.0, 0.0),
-            acceleration.min_spheres(MIN_SPHERES),
-        ) {
+        match tree::grow_still(spheres, acceleration.min_spheres(MIN_SPHERES)) {
             Some(tree) => Self {
                 spheres: tree.sort(spheres),
                 nodes: tree.nodes,

@@ -40,12 +40,7 @@ impl<'a> GpuTracer<'a> {
     /// The device's errors, here and in the other functions.
     pub fn new(gpu: &'a Gpu, spheres: &[Sphere], acceleration: Acceleration) -> Result<Self> {
         Ok(
-            match tree::grow(
-                spheres,
-                &[],
-                (0.0, 0.0),
-                acceleration.min_spheres(MIN_SPHERES),
-            ) {
+            match tree::grow_still(spheres, acceleration.min_spheres(MIN_SPHERES)) {
                 Some(tree) => Self {
                     gpu,
                     spheres: gpu.upload("spheres", &tree.sort(spheres))?,

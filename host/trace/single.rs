@@ -163,12 +163,12 @@ impl Search {
         while at < end {
             // Behind the last of all, the last again.
             let last = spheres.count() - 1;
-            let four = if at + (LANES as u32 - 1) <= last {
+            let four = if last - at >= LANES as u32 - 1 {
                 // SAFETY: each is at most the last.
                 [0, 1, 2, 3].map(|lane| unsafe { spheres.sphere(at + lane) })
             } else {
                 // SAFETY: each is at most the last.
-                [0, 1, 2, 3].map(|lane| unsafe { spheres.sphere((at + lane).min(last)) })
+                [0, 1, 2, 3].map(|lane| unsafe { spheres.sphere(at + lane.min(last - at)) })
             };
             let mut found = self.sift(four);
             found &= (1 << (end - at).min(LANES as u32)) - 1;
