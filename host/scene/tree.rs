@@ -563,10 +563,9 @@ impl Split {
 fn partition(items: &mut [Item], is_left: impl Fn(&Item) -> bool) -> usize {
     let mut count = 0;
     for at in 0..items.len() {
-        let item = items[at];
-        items[at] = items[count];
-        items[count] = item;
-        count += usize::from(is_left(&item));
+        let is_left = is_left(&items[at]);
+        items.swap(at, count);
+        count += usize::from(is_left);
     }
     count
 }
