@@ -37,9 +37,9 @@ def call(*command, **env):
         raise Missing(f"{pathlib.Path(command[0]).name}: {(errors or lines)[-1].strip()}")
 
 
-def on_path(program):
+def on_path(program, how="./run --install asks apt for it"):
     if not shutil.which(program):
-        raise Missing(f"{program} is not installed (./run --install asks apt for it)")
+        raise Missing(f"{program} is not installed ({how})")
 
 
 def embree(cache, out, *flags):
@@ -100,7 +100,7 @@ def mitsuba(cache):
 
 def cuda(name):
     def prepare(cache):
-        on_path("nvcc")
+        on_path("nvcc", "it comes with NVIDIA's CUDA toolkit")
         out = cache / f"cuda-{name}"
         call("nvcc", "-O3", "-std=c++17", "-arch=native", "-o", out, HERE / f"cuda/{name}.cu")
         return [out]
