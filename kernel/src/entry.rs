@@ -161,7 +161,7 @@ pub fn render_by_tiles(
                     let index = first + at + (candidate & 7);
                     let which = candidate >> 3;
                     if index < end {
-                        let end_t = pick(t_max, which);
+                        let end_t = pick(t_max.x, t_max.y, t_max.z, t_max.w, which);
                         // SAFETY: `end` is at most the number of spheres.
                         let sphere = unsafe { *spheres.index_unchecked(index as usize) };
                         let mut ray = launch.ray(pixel_of(pixel, which), Pixel::default());
@@ -196,19 +196,9 @@ pub fn render_by_tiles(
         if place < pixels.len() {
             let held = pixels[place];
             let ray = launch.ray(pixel, held);
-            let mut sphere = found.x;
-            if which == 1 {
-                sphere = found.y;
-            }
-            if which == 2 {
-                sphere = found.z;
-            }
-            if which == 3 {
-                sphere = found.w;
-            }
             let hit = Hit {
-                t: pick(t_max, which),
-                sphere,
+                t: pick(t_max.x, t_max.y, t_max.z, t_max.w, which),
+                sphere: pick(found.x, found.y, found.z, found.w, which),
             };
             pixels[place] =
                 launch.pixel(shading, &ray, hit, spheres, material_ids, materials, held);
@@ -236,16 +226,16 @@ fn pixel_of(first: UVec2, which: u32) -> UVec2 {
 
 /// One of four numbers, without an array in memory.
 #[inline]
-fn pick(numbers: Vec4, which: u32) -> f32 {
-    let mut number = numbers.x;
+fn pick<T: Copy>(first: T, second: T, third: T, fourth: T, which: u32) -> T {
+    let mut number = first;
     if which == 1 {
-        number = numbers.y;
+        number = second;
     }
     if which == 2 {
-        number = numbers.z;
+        number = third;
     }
     if which == 3 {
-        number = numbers.w;
+        number = fourth;
     }
     number
 }

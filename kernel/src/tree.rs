@@ -37,6 +37,7 @@ use spirv_std::arch::IndexUnchecked;
 #[cfg(target_arch = "spirv")]
 use spirv_std::num_traits::Float as _;
 
+use crate::candidates::power_of_two_under;
 use crate::hit::Hit;
 use crate::nearest::Spheres;
 use crate::precision::{Rung, intersect};
@@ -165,28 +166,15 @@ pub struct Slabs {
     pub octant: u32,
 }
 
-/// The planes of a node's grid along a ray: plane q is met at q·step + near or far.
-#[derive(Clone, Copy, Debug)]
-pub struct Planes {
-    /// From one plane to the next.
-    pub step: Vec3,
-    /// The first plane, as one where a box begins.
-    pub near: Vec3,
-    /// The first plane, as one where a box ends.
-    pub far: Vec3,
-}
-
 impl Slabs {
     /// Of a ray in a tree, which has a first node.
     #[inline]
     #[must_use]
     pub fn of(rung: u32, ray: &Ray, nodes: &[Node]) -> Self {
-        let d = ray.direction;
-        let largest = d.abs().max_element().max(f32::MIN_POSITIVE);
-        // 2 to the exponent of the largest component, and one over it.
-        let exponent = largest.to_bits() & 0x7f80_0000;
-        let unit = f32::from_bits(exponent);
-        let d = d * f32::from_bits(0x7f00_0000 - exponent);
+        let scale = power_of_two_under(ray.direction);
+        // One over it: exponents that add up to those of one.
+        let unit = f32::from_bits(0x7f00_0000 - scale.to_bits());
+        let d = ray.direction * scale;
         let inverse = Vec3::new(reciprocal(d.x), reciprocal(d.y), reciprocal(d.z));
         let mut widening = Vec3::ZERO;
         if rung < Rung::Compensated.to_u32() {
@@ -206,25 +194,6 @@ impl Slabs {
         }
     }
 
-    /// Where the planes of a node are met.
-    #[inline]
-    #[must_use]
-    pub fn planes(&self, node: &Node) -> Planes {
-        let exponents = node.grid.w;
-        let step = Vec3::new(
-            f32::from_bits((exponents & 0xff) << 23),
-            f32::from_bits((exponents & 0xff00) << 15),
-            f32::from_bits((exponents & 0x00ff_0000) << 7),
-        ) * self.inverse;
-        let offset = (corner(node.grid) - self.origin) * self.inverse;
-        let slack = (offset.abs() + step.abs() * 256.0) * (16.0 * U) + self.widening;
-        Planes {
-            step,
-            near: offset - slack,
-            far: offset + slack,
-        }
-    }
-
     /// The end of a ray, given as the planes count it, with what a box test may be off by.
     #[inline]
     #[must_use]
@@ -235,9 +204,18 @@ impl Slabs {
     /// The children that the ray may meet before `end`, a bit each.
     #[inline]
     fn meets(&self, node: &Node, end: f32) -> u32 {
-        let planes = self.planes(node);
+        let exponents = node.grid.w;
+        let step = Vec3::new(
+            f32::from_bits((exponents & 0xff) << 23),
+            f32::from_bits((exponents & 0xff00) << 15),
+            f32::from_bits((exponents & 0x00ff_0000) << 7),
+        ) * self.inverse;
+        let offset = (corner(node.grid) - self.origin) * self.inverse;
+        let slack = (offset.abs() + step.abs() * 256.0) * (16.0 * U) + self.widening;
         let boxes = Boxes {
-            planes,
+            step,
+            near: offset - slack,
+            far: offset + slack,
             start: self.start,
             end: Self::widened_end(end),
         };
@@ -280,10 +258,12 @@ impl Slabs {
     }
 }
 
-/// Boxes, and a piece of a ray that may meet them.
+/// Planes of boxes, as parameters along a ray: q·step + near or far, q a byte.
 #[derive(Clone, Copy)]
 struct Boxes {
-    planes: Planes,
+    step: Vec3,
+    near: Vec3,
+    far: Vec3,
     start: f32,
     end: f32,
 }
@@ -299,7 +279,7 @@ impl Boxes {
     #[inline]
     fn meets_one(&self, planes: [u32; 6], shift: u32) -> bool {
         let byte = |word: u32| ((word >> shift) & 0xff) as f32;
-        let Planes { step, near, far } = self.planes;
+        let (step, near, far) = (self.step, self.near, self.far);
         let near_x = byte(planes[0]) * step.x + near.x;
         let near_y = byte(planes[1]) * step.y + near.y;
         let near_z = byte(planes[2]) * step.z + near.z;
