@@ -9,7 +9,7 @@
 //! Loops over arrays become vector instructions; `multiversion` compiles them for several
 //! instruction sets and chooses one when the program runs.
 
-use glam::{DVec3, UVec2, Vec3};
+use glam::{DVec3, UVec2, UVec4, Vec3};
 use multiversion::multiversion;
 use spherule_kernel::candidates::Shared;
 use spherule_kernel::precision::intersect;
@@ -480,26 +480,19 @@ fn trace_on<const RUNG: u32>(packet: &mut Packet, nodes: &[Node], spheres: &[Sph
         let node = &nodes[first];
         let boxes = Boxes::of(node, packet.origin);
         let (mut met, depths) = boxes.meets(&packet.frustum, widening, packet.end());
-        let inner = node.grid.w >> 24;
         let bottom = height;
         while met != 0 {
             let child = met.trailing_zeros();
             met &= met - 1;
-            let before = (1 << child) - 1;
-            let entry = if inner >> child & 1 == 1 {
-                Entry {
-                    depth: depths[child as usize],
-                    first: node.links.x + (inner & before).count_ones(),
-                    count: 0,
-                }
+            let (first, count) = if node.is_node(child) {
+                (node.child(child), 0)
             } else {
-                let counts = node.links.z;
-                let before = counts & ((1_u32 << (4 * child)) - 1);
-                Entry {
-                    depth: depths[child as usize],
-                    first: node.links.y + (0..8).map(|n| before >> (4 * n) & 15).sum::<u32>(),
-                    count: counts >> (4 * child) & 15,
-                }
+                node.leaf(child)
+            };
+            let entry = Entry {
+                depth: depths[child as usize],
+                first,
+                count,
             };
             // The nearest on top.
             let mut at = height;
@@ -511,6 +504,20 @@ fn trace_on<const RUNG: u32>(packet: &mut Packet, nodes: &[Node], spheres: &[Sph
             height += 1;
         }
     }
+}
+
+/// A row of a node's sides.
+#[inline(always)]
+fn side_row(words: &UVec4) -> [f32; WIDTH] {
+    let words = words.to_array();
+    std::array::from_fn(|child| {
+        let word = words[child % 4];
+        if child < 4 {
+            Node::lower(word)
+        } else {
+            Node::upper(word)
+        }
+    })
 }
 
 /// The eight boxes of a node, as seen from an origin.
@@ -526,27 +533,25 @@ struct Boxes {
 impl Boxes {
     #[inline(always)]
     fn of(node: &Node, origin: Vec3) -> Self {
-        let bytes: &[u8; 80] = bytemuck::cast_ref(node);
-        let exponents = node.grid.w;
-        let step = [0, 8, 16].map(|shift| f32::from_bits((exponents >> shift & 0xff) << 23));
-        let corner = [node.grid.x, node.grid.y, node.grid.z].map(f32::from_bits);
+        let corner = [node.corner.x, node.corner.y, node.corner.z].map(f32::from_bits);
         let offset = Vec3::from_array(corner) - origin;
         let mut boxes = Self {
             low: [[0.0; WIDTH]; 3],
             high: [[0.0; WIDTH]; 3],
-            size: offset.abs() + Vec3::from_array(step) * 256.0,
-            are_there: exponents >> 24,
+            size: offset.abs(),
+            are_there: 0,
         };
         for axis in 0..3 {
+            let (low, high) = (side_row(&node.sides[axis]), side_row(&node.sides[3 + axis]));
+            boxes.size[axis] += high.iter().copied().fold(0.0, f32::max);
             for child in 0..WIDTH {
-                let low = f32::from(bytes[32 + 8 * axis + child]);
-                let high = f32::from(bytes[56 + 8 * axis + child]);
-                boxes.low[axis][child] = low * step[axis] + offset[axis];
-                boxes.high[axis][child] = high * step[axis] + offset[axis];
+                boxes.low[axis][child] = low[child] + offset[axis];
+                boxes.high[axis][child] = high[child] + offset[axis];
             }
         }
         for child in 0..WIDTH {
-            boxes.are_there |= u32::from(node.links.z >> (4 * child) & 15 != 0) << child;
+            let is_there = (node.corner.w | node.links.z) >> (4 * child) & 15 != 0;
+            boxes.are_there |= u32::from(is_there) << child;
         }
         boxes
     }

@@ -369,9 +369,10 @@ fn make_node<'a>(
         }
     }
     let places = places(&parts, &bounds);
-    let grid = Grid::over(&bounds);
+    let corner = corner_of(&bounds);
+    let [x, y, z] = corner.to_array().map(f32::to_bits);
     let mut node = Node {
-        grid: grid.bits(),
+        corner: UVec4::new(x, y, z, 0),
         links: UVec4::new(first_node, order.len() as u32, 0, 0),
         ..Node::default()
     };
@@ -379,20 +380,22 @@ fn make_node<'a>(
     for (part, place) in parts.into_iter().zip(places) {
         sorted[place] = Some(part);
     }
+    // The first four before the last: which half of a word is whose matters.
+    let boxes = sorted.each_ref().map(|part| {
+        part.as_ref().map_or((CLOSED_LOW, CLOSED_HIGH), |part| {
+            sides(&part.bounds, corner)
+        })
+    });
+    put_sides(&boxes, &mut node);
     let mut inner = Vec::new();
     for (place, part) in sorted.into_iter().enumerate() {
-        let Some(part) = part else {
-            // A box that ends before it begins, which no ray meets.
-            put_sides([255; 3], [0; 3], place, &mut node);
-            continue;
-        };
-        grid.put(&part.bounds, place, &mut node);
+        let Some(part) = part else { continue };
         let count = part.items.len();
         if count <= Node::MAX_LEAF {
             order.extend(part.items.iter().map(Item::index));
-            node.links.z |= (count as u32) << (4 * place);
+            node.links.z |= ((1 << count) - 1) << (4 * place);
         } else {
-            node.grid.w |= 1 << (24 + place);
+            node.corner.w |= 1 << (4 * place + 1);
             inner.push(part);
         }
     }
@@ -735,67 +738,45 @@ fn places(parts: &[Part<'_>], bounds: &Bounds) -> [usize; Node::WIDTH] {
     places
 }
 
-/// The grid of a node's boxes.
-struct Grid {
-    corner: Vec3,
-    /// The biased exponent of the step along each axis.
-    exponents: [u32; 3],
+/// Sides of a box that ends before it begins, which no ray meets.
+const CLOSED_LOW: Vec3 = Vec3::splat(1e38);
+const CLOSED_HIGH: Vec3 = Vec3::splat(1e-30);
+
+/// What a node's sides are told from: a little below the corner of smallest coordinates, so that no
+/// distance is zero or so small that it is no normal number.
+fn corner_of(bounds: &Bounds) -> Vec3 {
+    let (low, high) = (bounds.low.truncate(), bounds.high.truncate());
+    let below = low - (high - low) * (1.0 / 512.0) - 1e-27;
+    Vec3::from_array(below.to_array().map(f32::next_down))
 }
 
-impl Grid {
-    fn over(bounds: &Bounds) -> Self {
-        let corner = bounds.low.truncate();
-        let exponents = [0, 1, 2].map(|axis| {
-            let side = f64::from(bounds.high[axis]) - f64::from(bounds.low[axis]);
-            // The smallest power of two of which 255 reach; never so small that it is no normal number.
-            let bits = (side / 255.0).to_bits();
-            let is_between = bits & ((1 << 52) - 1) != 0;
-            let exponent = (bits >> 52) as i64 - 1023 + i64::from(is_between);
-            (exponent + 127).clamp(1, 254) as u32
-        });
-        Self { corner, exponents }
-    }
-
-    fn bits(&self) -> UVec4 {
-        let [x, y, z] = self.exponents;
-        UVec4::new(
-            self.corner.x.to_bits(),
-            self.corner.y.to_bits(),
-            self.corner.z.to_bits(),
-            x | y << 8 | z << 16,
-        )
-    }
-
-    /// Puts a child's box at its place, rounded outwards.
-    fn put(&self, bounds: &Bounds, place: usize, node: &mut Node) {
-        let along = |axis: usize, x: f32| {
-            let per_step = f64::from_bits((1023 + 127 - u64::from(self.exponents[axis])) << 52);
-            (f64::from(x) - f64::from(self.corner[axis])) * per_step
-        };
-        // Casts cut what is below zero, and the fraction.
-        let low = |axis| (along(axis, bounds.low[axis]) as u32).min(255);
-        let high = |axis| {
-            let high = along(axis, bounds.high[axis]);
-            let whole = high as u32;
-            (whole + u32::from(f64::from(whole) < high)).min(255)
-        };
-        put_sides([0, 1, 2].map(low), [0, 1, 2].map(high), place, node);
-    }
+/// How far a box's sides are from the corner, rounded outwards to floats.
+fn sides(bounds: &Bounds, corner: Vec3) -> (Vec3, Vec3) {
+    let corner = corner.as_dvec3();
+    let low = (bounds.low.truncate().as_dvec3() - corner).as_vec3();
+    let high = (bounds.high.truncate().as_dvec3() - corner).as_vec3();
+    (
+        Vec3::from_array(low.to_array().map(f32::next_down)),
+        Vec3::from_array(high.to_array().map(f32::next_up)),
+    )
 }
 
-/// Puts the sides of a child's box where there are none yet.
-fn put_sides(low: [u32; 3], high: [u32; 3], place: usize, node: &mut Node) {
-    put_byte(&mut node.low_xy, place, low[0]);
-    put_byte(&mut node.low_xy, 8 + place, low[1]);
-    put_byte(&mut node.low_z_high_x, place, low[2]);
-    put_byte(&mut node.low_z_high_x, 8 + place, high[0]);
-    put_byte(&mut node.high_yz, place, high[1]);
-    put_byte(&mut node.high_yz, 8 + place, high[2]);
-}
-
-/// Puts a byte where there is none yet.
-fn put_byte(words: &mut UVec4, at: usize, byte: u32) {
-    words[at / 4] |= byte << (at % 4 * 8);
+/// Puts the sides of the eight boxes, rounded outwards to what a node has room for.
+fn put_sides(boxes: &[(Vec3, Vec3); Node::WIDTH], node: &mut Node) {
+    const LAST: usize = Node::WIDTH / 2;
+    for axis in 0..3 {
+        for word in 0..LAST {
+            let (first, last) = (&boxes[word], &boxes[LAST + word]);
+            // Positive floats are in the order of their bits.
+            let low = first.0[axis].to_bits() >> 16;
+            let high = first.1[axis].to_bits().div_ceil(1 << 16);
+            // The word as a whole is the other's: at most its low side, at least its high side.
+            let low = (last.0[axis].to_bits().saturating_sub(low) >> 16) << 16 | low;
+            let high = (last.1[axis].to_bits().saturating_sub(high)).div_ceil(1 << 16) << 16 | high;
+            node.sides[axis][word] = low;
+            node.sides[3 + axis][word] = high;
+        }
+    }
 }
 
 #[cfg(test)]
@@ -929,27 +910,21 @@ mod tests {
 
     /// The boxes of a node's children, as the kernel reads them, and their links.
     fn children(node: &Node) -> Vec<(DVec3, DVec3, u32)> {
-        let corner = [node.grid.x, node.grid.y, node.grid.z].map(f32::from_bits);
-        let byte = |words: UVec4, at: usize| words[at / 4] >> (at % 4 * 8) & 0xff;
+        let corner = [node.corner.x, node.corner.y, node.corner.z].map(f32::from_bits);
         (0..Node::WIDTH)
             .map(|place| {
-                let low = [
-                    byte(node.low_xy, place),
-                    byte(node.low_xy, 8 + place),
-                    byte(node.low_z_high_x, place),
-                ];
-                let high = [
-                    byte(node.low_z_high_x, 8 + place),
-                    byte(node.high_yz, place),
-                    byte(node.high_yz, 8 + place),
-                ];
-                let at = |steps: [u32; 3]| {
+                let at = |first: usize| {
                     DVec3::from_array([0, 1, 2].map(|axis| {
-                        let exponent = (node.grid.w >> (8 * axis) & 0xff) as i32 - 127;
-                        f64::from(corner[axis]) + f64::from(steps[axis]) * 2_f64.powi(exponent)
+                        let word = node.sides[first + axis][place % 4];
+                        let side = if place < 4 {
+                            Node::lower(word)
+                        } else {
+                            Node::upper(word)
+                        };
+                        f64::from(corner[axis]) + f64::from(side)
                     }))
                 };
-                (at(low), at(high), node.links.z >> (4 * place) & 15)
+                (at(0), at(3), node.leaf(place as u32).1)
             })
             .collect()
     }
@@ -970,7 +945,7 @@ mod tests {
         let mut inner = 0;
         let mut next = node.links.y;
         for (place, (low, high, count)) in children(&node).into_iter().enumerate() {
-            let is_node = node.grid.w >> (24 + place) & 1 == 1;
+            let is_node = node.is_node(place as u32);
             let inside = if is_node {
                 assert_eq!(count, 0);
                 let child = node.links.x as usize + inner;

@@ -3,21 +3,13 @@
 //! What differs from the kernel's walk is that the nearest box is entered first, that one beyond the
 //! nearest hit is left out when its turn comes, and that two rays take turns, so that what one waits for does
 //! not hold up the other.
-//!
-//! With P the corner of a node's grid, s its step, O the ray's origin and i = 1/d, plane q is met at
-//!
-//! > (P i + (−O i ∓ S)) + q (s i),
-//!
-//! fused, computed to within 5u(|P| + |O| + 255 s)|i| with u = 2⁻²⁴. Neither |P| nor 128 s is beyond the size and
-//! the sides of the tree's [`Extent`], whose corners are L and H, so that one S serves all nodes: per axis
-//! 16u(max(|L|, |H|) + |O| + 2(H − L))|i|, and the rung's widening.
 
 use std::arch::x86_64::*;
 use std::mem::MaybeUninit;
 
-use glam::Vec3;
+use glam::{UVec4, Vec3};
 use spherule_kernel::nearest::Spheres;
-use spherule_kernel::tree::{Extent, Node, Slabs, sum_of_nibbles};
+use spherule_kernel::tree::{Node, Slabs};
 use spherule_kernel::{Hit, Ray};
 
 use super::single::{Search, Single};
@@ -28,9 +20,6 @@ const WIDTH: usize = Node::WIDTH;
 const MAX_HEIGHT: usize = Node::MAX_DEPTH * (WIDTH - 1) + WIDTH;
 /// Rays that take turns.
 const RAYS: usize = 2;
-/// Where in a node the bytes of its boxes begin, and how far the high sides are from the low ones.
-const BYTES: usize = std::mem::offset_of!(Node, low_xy);
-const TO_HIGH: usize = 3 * WIDTH;
 
 /// The proof that this machine has AVX2 and what comes with it.
 #[derive(Clone, Copy, Debug)]
@@ -185,9 +174,9 @@ struct Walk {
     inverse: __m128,
     near: __m128,
     far: __m128,
-    /// Where in a node the bytes of the near sides are, and of the far ones.
-    near_bytes: [usize; 3],
-    far_bytes: [usize; 3],
+    /// Which of a node's rows of sides are near ones, and which are far.
+    near_rows: [usize; 3],
+    far_rows: [usize; 3],
     /// The ray's interval as the planes count it.
     start: f32,
     end: f32,
@@ -203,24 +192,17 @@ struct Walk {
 impl Walk {
     #[inline(always)]
     fn of(avx2: Avx2, single: &Single<'_>, ray: &Ray) -> Self {
-        const U: f32 = 1.0 / (1 << 24) as f32;
         let slabs = Slabs::of(single.rung.to_u32(), ray, single.nodes);
-        let (origin, inverse) = (slabs.origin, slabs.inverse);
-        let Extent { low, high, .. } = Extent::of_node(&single.nodes[0]);
-        let size = low.abs().max(high.abs()) + origin.abs() + (high - low) * 2.0;
-        let slack = size * inverse.abs() * (16.0 * U) + slabs.widening;
-        let first = -origin * inverse;
-        let backwards = [inverse.x, inverse.y, inverse.z].map(|x| usize::from(x < 0.0));
-        let bytes = |axis: usize, is_high: usize| BYTES + WIDTH * axis + TO_HIGH * is_high;
+        let near_rows = slabs.near_rows.to_array().map(|row| row as usize);
         let lanes = |v: Vec3| -> __m128 { v.extend(0.0).into() };
         let mut walk = Self {
             _avx2: avx2,
             search: single.search(ray),
-            inverse: lanes(inverse),
-            near: lanes(first - slack),
-            far: lanes(first + slack),
-            near_bytes: [0, 1, 2].map(|axis| bytes(axis, backwards[axis])),
-            far_bytes: [0, 1, 2].map(|axis| bytes(axis, 1 - backwards[axis])),
+            inverse: lanes(slabs.inverse),
+            near: lanes(slabs.near),
+            far: lanes(slabs.far),
+            near_rows,
+            far_rows: [0, 1, 2].map(|axis| 2 * axis + 3 - near_rows[axis]),
             start: slabs.start,
             end: 0.0,
             last_key: 0,
@@ -270,15 +252,12 @@ impl Walk {
             child = key.cast_unsigned() & 7;
         }
         loop {
-            let inner = node.grid.w >> 24;
-            if inner >> child & 1 == 1 {
-                self.node = node.links.x + (inner & ((1 << child) - 1)).count_ones();
+            if node.is_node(child) {
+                self.node = node.child(child);
                 return true;
             }
-            let counts = node.links.z;
-            let first = node.links.y + sum_of_nibbles(counts & ((1 << (4 * child)) - 1));
-            self.search
-                .test::<ANY, S>(spheres, first, counts >> (4 * child) & 15);
+            let (first, count) = node.leaf(child);
+            self.search.test::<ANY, S>(spheres, first, count);
             if ANY && self.search.hit.is_some() {
                 return false;
             }
@@ -313,28 +292,29 @@ impl Walk {
                 _mm256_broadcastss_ps(_mm_permute_ps::<{ $lane * 0b0101_0101 }>($lanes))
             };
         }
-        let exponents = _mm_cvtepu8_epi32(_mm_cvtsi32_si128(node.grid.w.cast_signed()));
-        let step = _mm_castsi128_ps(_mm_slli_epi32::<23>(exponents));
-        let step = _mm_mul_ps(step, self.inverse);
-        let (x, y, z) = (node.grid.x, node.grid.y, node.grid.z);
+        let (x, y, z) = (node.corner.x, node.corner.y, node.corner.z);
         let [x, y, z] = [x, y, z].map(u32::cast_signed);
         let corner = _mm_castsi128_ps(_mm_setr_epi32(x, y, z, 0));
         let near = _mm_fmadd_ps(corner, self.inverse, self.near);
         let far = _mm_fmadd_ps(corner, self.inverse, self.far);
-        let bytes: &[u8; size_of::<Node>()] = bytemuck::cast_ref(node);
-        let row = |at: usize, step: __m256, first: __m256| {
-            // SAFETY: `at` is one of the six places of eight bytes in a node.
-            let bytes = unsafe { _mm_loadl_epi64(bytes.as_ptr().add(at).cast()) };
-            let planes = _mm256_cvtepi32_ps(_mm256_cvtepu8_epi32(bytes));
-            _mm256_fmadd_ps(planes, step, first)
+        let row = |at: usize, inverse: __m256, first: __m256| {
+            // SAFETY: `at` is one of the six rows.
+            let words: *const UVec4 = unsafe { node.sides.get_unchecked(at) };
+            // SAFETY: a row is 16 bytes.
+            let words = unsafe { _mm_loadu_si128(words.cast()) };
+            let lower = _mm256_castsi128_si256(_mm_slli_epi32::<16>(words));
+            let sides = _mm256_castsi256_ps(_mm256_inserti128_si256::<1>(lower, words));
+            _mm256_fmadd_ps(sides, inverse, first)
         };
-        let (step_x, step_y, step_z) = (splat!(step, 0), splat!(step, 1), splat!(step, 2));
-        let near_x = row(self.near_bytes[0], step_x, splat!(near, 0));
-        let near_y = row(self.near_bytes[1], step_y, splat!(near, 1));
-        let near_z = row(self.near_bytes[2], step_z, splat!(near, 2));
-        let far_x = row(self.far_bytes[0], step_x, splat!(far, 0));
-        let far_y = row(self.far_bytes[1], step_y, splat!(far, 1));
-        let far_z = row(self.far_bytes[2], step_z, splat!(far, 2));
+        let inverse = self.inverse;
+        let (inverse_x, inverse_y) = (splat!(inverse, 0), splat!(inverse, 1));
+        let inverse_z = splat!(inverse, 2);
+        let near_x = row(self.near_rows[0], inverse_x, splat!(near, 0));
+        let near_y = row(self.near_rows[1], inverse_y, splat!(near, 1));
+        let near_z = row(self.near_rows[2], inverse_z, splat!(near, 2));
+        let far_x = row(self.far_rows[0], inverse_x, splat!(far, 0));
+        let far_y = row(self.far_rows[1], inverse_y, splat!(far, 1));
+        let far_z = row(self.far_rows[2], inverse_z, splat!(far, 2));
         let first = _mm256_max_ps(
             _mm256_max_ps(near_x, near_y),
             _mm256_max_ps(near_z, _mm256_set1_ps(self.start)),

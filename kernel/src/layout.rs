@@ -113,11 +113,9 @@ layouts! {
     "Accumulator.color_alpha" = offset_of!(Accumulator, color_alpha);
     "Accumulator.statistics" = offset_of!(Accumulator, statistics);
     "size of Node" = size_of::<Node>();
-    "Node.grid" = offset_of!(Node, grid);
+    "Node.corner" = offset_of!(Node, corner);
     "Node.links" = offset_of!(Node, links);
-    "Node.low_xy" = offset_of!(Node, low_xy);
-    "Node.low_z_high_x" = offset_of!(Node, low_z_high_x);
-    "Node.high_yz" = offset_of!(Node, high_yz);
+    "Node.sides" = offset_of!(Node, sides);
     "size of Operands" = size_of::<Operands>();
     "Operands.a" = offset_of!(Operands, a);
     "Operands.b" = offset_of!(Operands, b);

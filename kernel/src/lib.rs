@@ -55,6 +55,7 @@ pub mod entry;
 pub mod film;
 pub mod fog;
 pub mod hit;
+pub mod instructions;
 pub mod integrate;
 pub mod layout;
 pub mod light;
