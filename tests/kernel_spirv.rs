@@ -3,7 +3,7 @@
 //! With the feature `compile-kernel` the sources have just been compiled, and the test compares
 //! bit by bit. `SPHERULE_RENEW_KERNEL=1` writes what was compiled over what is committed.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 
 use spherule::device::Module;
 use spherule::kernel::{layout, spirv};
@@ -205,4 +205,54 @@ fn with_padding(offsets: &[u32], size: u32) -> Vec<u32> {
         .iter()
         .flat_map(|offset| [*offset, offset + size])
         .collect()
+}
+
+/// What is left of a module for one entry point is a module, without what the others need.
+#[test]
+fn an_entry_point_alone_has_only_what_is_its_own() {
+    const ENTRY_POINT: u32 = 15;
+    const FUNCTION: u32 = 54;
+    const VARIABLE: u32 = 59;
+    const DECORATE: u32 = 71;
+    const WORKGROUP: u32 = 4;
+    for (bytes, is_f32) in [(spirv::F32, true), (spirv::F64, false)] {
+        let module = Module::from_bytes("committed", bytes).expect("a module");
+        for entry in module.entry_points() {
+            let name = &entry.name;
+            let only = module.only(name);
+            assert_eq!(only.entry_points(), std::slice::from_ref(entry));
+            assert_eq!(only.only(name).words(), only.words());
+            let (mut entries, mut functions, mut shared) = (0, 0, 0);
+            let mut decorated = Vec::new();
+            let mut named: HashSet<u32> = HashSet::new();
+            let mut at = 5;
+            while at < only.words().len() {
+                let count = (only.words()[at] >> 16) as usize;
+                let operands = &only.words()[at + 1..at + count];
+                match only.words()[at] & 0xffff {
+                    ENTRY_POINT => entries += 1,
+                    FUNCTION => functions += 1,
+                    VARIABLE if operands[2] == WORKGROUP => shared += 1,
+                    DECORATE => decorated.push(operands[0]),
+                    _ => {}
+                }
+                if only.words()[at] & 0xffff != DECORATE {
+                    named.extend(operands.iter().copied());
+                }
+                at += count;
+            }
+            assert_eq!((entries, functions), (1, 1), "{name}");
+            assert_eq!(shared > 0, name == "render_by_tiles", "{name}");
+            assert!(decorated.iter().all(|id| named.contains(id)), "{name}");
+            if is_f32 {
+                let naga = wgpu::naga::front::spv::parse_u8_slice(
+                    bytemuck::cast_slice(only.words()),
+                    &wgpu::naga::front::spv::Options::default(),
+                );
+                assert_eq!(naga.expect("a module").entry_points.len(), 1);
+            }
+        }
+    }
+    let module = Module::from_bytes("committed", spirv::F32).expect("a module");
+    assert_eq!(module.only("none").words(), module.words());
 }

@@ -276,7 +276,11 @@ impl Gpu {
 
         let during = format!("compiling the kernel {entry_point}");
         let made = self.watch.checked(&self.device, &during, || {
-            let shader = self.shader_module(module);
+            let shader = if module.is_trusted() {
+                self.shader_module(&module.only(entry_point))
+            } else {
+                self.shader_module(module)
+            };
             let layout = self.bind_group_layout(entry_point, bindings);
             let pipeline_layout =
                 self.device

@@ -4,6 +4,7 @@
 //! through, so the structure is checked here: the header, the length of each instruction, and
 //! what the host relies on (entry points, workgroup sizes, specialisation constants).
 
+use std::collections::{HashMap, HashSet};
 use std::fmt;
 
 use crate::error::{Error, Result};
@@ -16,9 +17,23 @@ mod op {
     pub(super) const ENTRY_POINT: u32 = 15;
     pub(super) const EXECUTION_MODE: u32 = 16;
     pub(super) const CAPABILITY: u32 = 17;
+    pub(super) const NAME: u32 = 5;
     pub(super) const SPEC_CONSTANT: u32 = 50;
+    pub(super) const FUNCTION: u32 = 54;
     pub(super) const FUNCTION_END: u32 = 56;
+    pub(super) const FUNCTION_CALL: u32 = 57;
+    pub(super) const VARIABLE: u32 = 59;
+    pub(super) const STORE: u32 = 62;
+    pub(super) const COPY_MEMORY: u32 = 63;
     pub(super) const DECORATE: u32 = 71;
+    pub(super) const CONTROL_BARRIER: u32 = 224;
+    pub(super) const MEMORY_BARRIER: u32 = 225;
+    pub(super) const ATOMIC_STORE: u32 = 228;
+    pub(super) const LOOP_MERGE: u32 = 246;
+    pub(super) const SELECTION_MERGE: u32 = 247;
+    pub(super) const LABEL: u32 = 248;
+    pub(super) const BRANCH: u32 = 249;
+    pub(super) const UNREACHABLE: u32 = 255;
     pub(super) const DECORATION_SPEC_ID: u32 = 1;
     pub(super) const MODE_LOCAL_SIZE: u32 = 17;
     pub(super) const MODEL_GL_COMPUTE: u32 = 5;
@@ -221,6 +236,127 @@ impl Module {
         })?;
         self.words[position] = value;
         Ok(self)
+    }
+
+    /// The module without its other entry points, and without the functions and variables that are theirs
+    /// alone; as it is where it has no such entry point. Drivers compile all that is there, and
+    /// NVIDIA's gives each entry point the workgroup memory of all of them, which it takes from its caches.
+    ///
+    /// For what rust-gpu makes: other compilers use instructions that this does not know.
+    #[must_use]
+    pub fn only(&self, entry_point: &str) -> Self {
+        let instructions = || Instructions::of(&self.words).flatten();
+        let is_entry = |name: &[u32]| literal_string(name).is_some_and(|it| it == entry_point);
+        let entry = instructions().find_map(|(_, opcode, operands)| match (opcode, operands) {
+            (op::ENTRY_POINT, [_, function, name @ ..]) if is_entry(name) => Some(*function),
+            _ => None,
+        });
+        let Some(entry) = entry else {
+            return self.clone();
+        };
+
+        let mut functions: HashMap<u32, Function> = HashMap::new();
+        let mut current = 0;
+        for (_, opcode, operands) in instructions() {
+            if let (op::FUNCTION, [_, function, ..]) = (opcode, operands) {
+                current = *function;
+            }
+            if current != 0 {
+                functions.entry(current).or_default().add(opcode, operands);
+            }
+        }
+        let mut kept = HashSet::new();
+        let mut pointers = HashSet::new();
+        let mut rest = vec![entry];
+        while let Some(id) = rest.pop() {
+            if kept.insert(id) {
+                let function = functions.remove(&id).unwrap_or_default();
+                rest.extend(function.calls);
+                pointers.extend(function.pointers);
+            }
+        }
+        // What is left is not called.
+        let mut dropped: HashSet<u32> = functions
+            .into_values()
+            .flat_map(|function| function.defines)
+            .collect();
+
+        let mut words = self.words[..HEADER_WORDS].to_vec();
+        let mut current = 0;
+        // Names and decorations stand before what they are of.
+        let is_dropped_variable = |opcode: u32, operands: &[u32]| match (opcode, operands) {
+            (op::VARIABLE, [_, id, ..]) => !pointers.contains(id),
+            _ => false,
+        };
+        for (_, opcode, operands) in instructions() {
+            match (opcode, operands) {
+                (op::FUNCTION, _) => break,
+                (_, [_, id, ..]) if is_dropped_variable(opcode, operands) => {
+                    dropped.insert(*id);
+                }
+                _ => {}
+            }
+        }
+        for (_, opcode, operands) in instructions() {
+            if let (op::FUNCTION, [_, function, ..]) = (opcode, operands) {
+                current = *function;
+            }
+            let is_kept = match (opcode, operands) {
+                _ if current != 0 => kept.contains(&current),
+                (op::ENTRY_POINT, [_, function, ..]) => *function == entry,
+                (op::EXECUTION_MODE, [function, ..]) => *function == entry,
+                (op::NAME | op::DECORATE, [id, ..]) => !dropped.contains(id),
+                _ => !is_dropped_variable(opcode, operands),
+            };
+            if is_kept {
+                words.push((operands.len() as u32 + 1) << 16 | opcode);
+                words.extend(operands);
+            }
+        }
+        let mut only = self.clone();
+        only.words = words;
+        only.entry_points.retain(|entry| entry.name == entry_point);
+        only
+    }
+}
+
+/// What a function is about.
+#[derive(Default)]
+struct Function {
+    /// The functions that it calls.
+    calls: Vec<u32>,
+    /// Where it reads, writes, or looks into, and more that does no harm.
+    pointers: Vec<u32>,
+    /// The results of its instructions.
+    defines: Vec<u32>,
+}
+
+impl Function {
+    fn add(&mut self, opcode: u32, operands: &[u32]) {
+        match (opcode, operands) {
+            (op::STORE | op::COPY_MEMORY | op::ATOMIC_STORE, _) => self.pointers.extend(operands),
+            (
+                op::CONTROL_BARRIER
+                | op::MEMORY_BARRIER
+                | op::LOOP_MERGE
+                | op::SELECTION_MERGE
+                | op::BRANCH..=op::UNREACHABLE
+                | op::FUNCTION_END,
+                _,
+            ) => {}
+            (op::LABEL, [label, ..]) => self.defines.push(*label),
+            (_, [_, result, rest @ ..]) => {
+                self.defines.push(*result);
+                if opcode == op::FUNCTION_CALL {
+                    self.calls.extend(rest.first());
+                    self.pointers.extend(rest);
+                } else {
+                    // Loads, access chains, atomics and array lengths begin with theirs.
+                    self.pointers.extend(rest.first());
+                }
+            }
+            _ => {}
+        }
     }
 }
 

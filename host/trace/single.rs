@@ -5,8 +5,8 @@
 //! asked about on its rung. With AVX2, which is looked for when the program runs, the eight boxes of a node
 //! are tested side by side, too; without it the kernel's walk does that.
 
-use glam::{Mat4, Vec3, Vec4};
-use spherule_kernel::candidates::{SLACK, power_of_two_under};
+use glam::{Mat4, Vec4};
+use spherule_kernel::candidates::{Line, SLACK};
 use spherule_kernel::nearest::{MovingSpheres, Spheres};
 use spherule_kernel::precision::intersect;
 use spherule_kernel::traversal::Traversal;
@@ -18,8 +18,6 @@ use super::avx2::{self, Avx2};
 
 /// Spheres side by side.
 const LANES: usize = 4;
-/// What a discriminant may lose where its terms are no normal numbers.
-const SMALLEST: f32 = -1e-36;
 
 /// What finds the hits of rays on one rung, in a tree or without one.
 #[derive(Clone, Copy, Debug)]
@@ -126,9 +124,7 @@ pub(super) struct Search {
     intersect: fn(Sphere, &Ray) -> f32,
     /// Ends where a sphere could still be of interest.
     pub(super) ray: Ray,
-    /// The direction, whose largest component was brought between 1 and 2, and its squared length.
-    direction: Vec3,
-    a: f32,
+    line: Line,
     /// What was found.
     pub(super) hit: Hit,
 }
@@ -136,16 +132,13 @@ pub(super) struct Search {
 impl Search {
     #[inline(always)]
     fn of(intersect: fn(Sphere, &Ray) -> f32, ray: &Ray) -> Self {
-        let d = ray.direction;
-        let direction = d * power_of_two_under(d);
         Self {
             intersect,
             ray: Ray {
                 t_max: ray.end(),
                 ..*ray
             },
-            direction,
-            a: direction.dot(direction),
+            line: Line::of(ray),
             hit: Hit::NONE,
         }
     }
@@ -196,20 +189,24 @@ impl Search {
     /// Which of four spheres may be hit, a bit each.
     #[inline(always)]
     fn sift(&self, spheres: [Sphere; LANES]) -> u32 {
-        let [a, b, c, d] = spheres.map(Sphere::to_vec4);
-        let rows = Mat4::from_cols(a, b, c, d).transpose();
-        let origin = self.ray.origin;
+        let [first, second, third, fourth] = spheres.map(Sphere::to_vec4);
+        let rows = Mat4::from_cols(first, second, third, fourth).transpose();
+        let Line {
+            origin,
+            direction,
+            a,
+        } = self.line;
         let x = rows.x_axis - Vec4::splat(origin.x);
         let y = rows.y_axis - Vec4::splat(origin.y);
         let z = rows.z_axis - Vec4::splat(origin.z);
         let rr = rows.w_axis * rows.w_axis;
         let oo = x * x + y * y + z * z;
-        let b = x * Vec4::splat(self.direction.x)
-            + y * Vec4::splat(self.direction.y)
-            + z * Vec4::splat(self.direction.z);
+        let b = x * Vec4::splat(direction.x)
+            + y * Vec4::splat(direction.y)
+            + z * Vec4::splat(direction.z);
         let c = (oo - rr) - Vec4::splat(SLACK) * (oo + rr);
-        let discriminant = b * b - Vec4::splat(self.a) * c;
+        let discriminant = b * b - Vec4::splat(a) * c;
         // A number that is none is asked about, too.
-        !discriminant.cmplt(Vec4::splat(SMALLEST)).bitmask() & 0xf
+        !discriminant.cmplt(Vec4::splat(Line::SMALLEST)).bitmask() & 0xf
     }
 }

@@ -39,7 +39,7 @@ use spirv_std::arch::IndexUnchecked;
 #[cfg(target_arch = "spirv")]
 use spirv_std::num_traits::Float as _;
 
-use crate::candidates::power_of_two_under;
+use crate::candidates::{Line, power_of_two_under};
 use crate::hit::Hit;
 use crate::instructions::{highest_bit, lowest_bit, max, min};
 use crate::nearest::Spheres;
@@ -409,6 +409,12 @@ pub fn work_in_tree<S: Spheres + ?Sized>(
     work
 }
 
+/// The index of the sphere that has this bit in a node's links.
+#[inline]
+fn sphere_at(links: UVec4, bit: u32) -> u32 {
+    links.y + (links.z & ((1 << bit) - 1)).count_ones()
+}
+
 /// The nearest hit, or any.
 #[inline]
 fn walk<const ANY: bool, S: Spheres + ?Sized>(
@@ -423,11 +429,10 @@ fn walk<const ANY: bool, S: Spheres + ?Sized>(
         return Hit::NONE;
     }
     let slabs = Slabs::of(rung, ray, nodes);
-    // What changes on the way is kept apart from what does not: compilers for GPUs carry a whole struct from
-    // round to round if any of it changes.
+    let line = Line::of(ray);
+    // What changes on the way is kept apart from what does not, and is little: compilers for GPUs carry a
+    // whole struct from round to round if any of it changes, and copy what they carry.
     let mut t_max = ray.end();
-    let mut end = t_max * slabs.unit;
-    let mut hit_t = Hit::NONE_T;
     let mut hit_sphere = Hit::NONE_SPHERE;
 
     let mut stack = [MaybeUninit::<UVec2>::uninit(); Node::MAX_DEPTH];
@@ -453,41 +458,61 @@ fn walk<const ANY: bool, S: Spheres + ?Sized>(
         let node = unsafe { nodes.index_unchecked(at as usize) };
         let (corner, links) = (load(&node.corner), load(&node.links));
         let inner = corner.w;
-        let met = slabs.meets(point(corner), &node.sides, end);
+        let met = slabs.meets(point(corner), &node.sides, t_max * slabs.unit);
         work.nodes += 1;
 
-        let mut leaves = (met * 15) & links.z;
+        let mut candidates = (met * 15) & links.z;
         let mut met = met & (inner >> 1);
-        while leaves != 0 {
-            let bit = lowest_bit(leaves);
-            leaves &= leaves - 1;
-            let before = links.z & ((1 << bit) - 1);
-            let index = (links.y + before.count_ones()).min(count - 1);
+        work.spheres += candidates.count_ones();
+        if ANY | (rung >= Rung::Compensated.to_u32()) {
+            // Threads of a GPU wait for each other: few operations on all spheres, then many on few. Where
+            // most that are left by this are hits, and a hit is cheap, it does not pay.
+            let mut leaves = candidates;
+            candidates = 0;
+            while leaves != 0 {
+                let bit = lowest_bit(leaves);
+                leaves &= leaves - 1;
+                let index = sphere_at(links, bit).min(count - 1);
+                // SAFETY: `index` is below the number of spheres.
+                let sphere = unsafe { spheres.sphere(index) };
+                candidates |= u32::from(line.may_hit(sphere)) << bit;
+            }
+        }
+        while candidates != 0 {
+            let bit = lowest_bit(candidates);
+            candidates &= candidates - 1;
+            let index = sphere_at(links, bit).min(count - 1);
             // SAFETY: `index` is below the number of spheres.
             let sphere = unsafe { spheres.sphere(index) };
             let t = intersect(rung, sphere, &Ray { t_max, ..*ray });
-            work.spheres += 1;
             if t < t_max {
-                if ANY {
-                    // Nothing is left to be visited. A `return` out of both loops was seen to be compiled
-                    // wrongly, by Mesa 22's llvmpipe.
-                    (leaves, met, height) = (0, 0, 0);
-                }
-                if (t < hit_t) | (index < hit_sphere) {
-                    (hit_t, hit_sphere) = (t, index);
-                }
                 // One as near is still of interest, if its index is lower.
-                t_max = next_up(t);
-                end = t_max * slabs.unit;
+                let next = next_up(t);
+                if (next < t_max) | (index < hit_sphere) {
+                    hit_sphere = index;
+                }
+                t_max = next;
+                if ANY {
+                    candidates = 0;
+                }
             }
+        }
+        if ANY & (hit_sphere != Hit::NONE_SPHERE) {
+            // Nothing is left to be visited. A `return` out of both loops was seen to be compiled wrongly, by
+            // Mesa 22's llvmpipe.
+            (met, height) = (0, 0);
         }
 
         first = links.x;
         group = slabs.in_order(met) | inner;
         if met == 0 {
             if height == 0 {
+                let mut t = Hit::NONE_T;
+                if hit_sphere != Hit::NONE_SPHERE {
+                    t = next_down(t_max);
+                }
                 return Hit {
-                    t: hit_t,
+                    t,
                     sphere: hit_sphere,
                 };
             }
@@ -512,6 +537,14 @@ pub fn next_up(x: f32) -> f32 {
     } else {
         1
     })
+}
+
+/// The next smaller float than one that [`next_up`] returned.
+#[inline]
+fn next_down(x: f32) -> f32 {
+    let bits = x.to_bits();
+    // By the sign's bit: GPUs take the smallest numbers for zero.
+    f32::from_bits(if bits >> 31 == 0 { bits - 1 } else { bits + 1 })
 }
 
 const _: () = {

@@ -16,11 +16,11 @@ struct Hit {
 };
 
 struct Node {
-    uint4 grid, links, low_xy, low_z_high_x, high_yz;
+    uint4 corner, links, sides[6];
 };
 
 constexpr float U = 1.0f / (1 << 24), NONE_T = 3.402823466e38f;
-constexpr uint32_t NONE = 0xffffffff, ROOT = 1;
+constexpr uint32_t NONE = 0xffffffff, ROOT = 1, FIRST_OF_FOUR = 0x11111111;
 constexpr int MAX_DEPTH = 20;
 
 __device__ float3 operator+(float3 a, float3 b) { return make_float3(a.x + b.x, a.y + b.y, a.z + b.z); }
@@ -29,7 +29,7 @@ __device__ float3 operator*(float3 a, float3 b) { return make_float3(a.x * b.x, 
 __device__ float3 operator*(float3 a, float b) { return make_float3(a.x * b, a.y * b, a.z * b); }
 __device__ float dot(float3 a, float3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 __device__ float3 abs3(float3 a) { return make_float3(fabsf(a.x), fabsf(a.y), fabsf(a.z)); }
-__device__ float3 corner(uint4 bits) {
+__device__ float3 point(uint4 bits) {
     return make_float3(__uint_as_float(bits.x), __uint_as_float(bits.y), __uint_as_float(bits.z));
 }
 
@@ -37,6 +37,11 @@ __device__ float reciprocal(float x) {
     const float largest = 18446744073709551616.0f;  // 2^64
     if (fabsf(x) > 1.0f / largest) return 1.0f / x;
     return x < 0.0f ? -largest : largest;
+}
+
+__device__ float power_of_two_under(float3 d) {
+    float largest = fmaxf(fmaxf(fabsf(d.x), fabsf(d.y)), fmaxf(fabsf(d.z), 1.17549435e-38f));
+    return __uint_as_float(0x7f000000 - (__float_as_uint(largest) & 0x7f800000));
 }
 
 __device__ float choose(float near, float far, const Ray &ray) {
@@ -56,108 +61,123 @@ __device__ float robust(float4 s, const Ray &ray) {
     if (!(discriminant >= 0.0f)) return NONE_T;
     float c = dot(o, o) - rr;
     float size = fabsf(b) + sqrtf(a * discriminant);
-    if (size > NONE_T) return NONE_T;
     float outer = size / a, inner = size > 0.0f ? c / size : 0.0f;
-    return b < 0.0f ? choose(inner, outer, ray) : choose(-outer, -inner, ray);
+    float t = b < 0.0f ? choose(inner, outer, ray) : choose(-outer, -inner, ray);
+    return size > NONE_T ? NONE_T : t;
 }
 
+// Whether any rung may find a hit.
+struct Line {
+    float3 origin, direction;
+    float a;
+
+    __device__ explicit Line(const Ray &ray) : origin(ray.origin) {
+        direction = ray.direction * power_of_two_under(ray.direction);
+        a = dot(direction, direction);
+    }
+
+    __device__ bool may_hit(float4 s) const {
+        float3 o = make_float3(s.x, s.y, s.z) - origin;
+        float oo = dot(o, o), rr = s.w * s.w, b = dot(o, direction);
+        return !(b * b - a * ((oo - rr) - 64.0f * U * (oo + rr)) < -1e-36f);
+    }
+};
+
 struct Slabs {
-    float3 origin, inverse, widening;
+    float3 inverse, near, far;
+    uint3 near_rows;
     float unit, start;
     uint32_t octant;
 
-    __device__ Slabs(const Ray &ray, const Node *nodes) : origin(ray.origin) {
-        float3 d = ray.direction;
-        float largest = fmaxf(fmaxf(fabsf(d.x), fabsf(d.y)), fmaxf(fabsf(d.z), 1.17549435e-38f));
-        uint32_t exponent = __float_as_uint(largest) & 0x7f800000;
-        unit = __uint_as_float(exponent);
-        d = d * __uint_as_float(0x7f000000 - exponent);
+    __device__ Slabs(const Ray &ray, const Node *nodes) {
+        float scale = power_of_two_under(ray.direction);
+        unit = __uint_as_float(0x7f000000 - __float_as_uint(scale));
+        float3 d = ray.direction * scale, origin = ray.origin;
         inverse = make_float3(reciprocal(d.x), reciprocal(d.y), reciprocal(d.z));
-        float3 low = abs3(corner(nodes[0].grid) - origin), high = abs3(corner(nodes[0].links) - origin);
-        float distance = fmaxf(low.x, high.x) + fmaxf(low.y, high.y) + fmaxf(low.z, high.z);
-        widening = abs3(inverse) * (distance * (32.0f * U));
+        float3 low = point(nodes[0].corner), high = point(nodes[0].links);
+        float3 below = abs3(low - origin), above = abs3(high - origin);
+        float distance = fmaxf(below.x, above.x) + fmaxf(below.y, above.y) + fmaxf(below.z, above.z);
+        low = abs3(low), below = abs3(high);
+        float3 size = make_float3(fmaxf(low.x, below.x), fmaxf(low.y, below.y), fmaxf(low.z, below.z));
+        size = size + abs3(origin) + (high - point(nodes[0].corner)) * 2.0f;
+        float wider = distance * (32.0f * U);
+        float3 slack = (size * (16.0f * U) + make_float3(wider, wider, wider)) * abs3(inverse);
+        float3 first = origin * inverse * -1.0f;
+        near = first - slack, far = first + slack;
+        near_rows = make_uint3(d.x < 0.0f ? 3 : 0, d.y < 0.0f ? 4 : 1, d.z < 0.0f ? 5 : 2);
         start = ray.t_min * unit;
-        octant = (d.x < 0.0f ? 0 : 1) | (d.y < 0.0f ? 0 : 2) | (d.z < 0.0f ? 0 : 4);
+        octant = (d.x < 0.0f ? 0 : 4) | (d.y < 0.0f ? 0 : 8) | (d.z < 0.0f ? 0 : 16);
     }
 
-    __device__ uint32_t meets(const Node &node, float end) const {
-        uint32_t exponents = node.grid.w;
-        float3 step = make_float3(__uint_as_float((exponents & 0xff) << 23),
-                                  __uint_as_float((exponents & 0xff00) << 15),
-                                  __uint_as_float((exponents & 0xff0000) << 7)) *
-                      inverse;
-        float3 offset = (corner(node.grid) - origin) * inverse;
-        float3 slack = (abs3(offset) + abs3(step) * 256.0f) * (16.0f * U) + widening;
-        float3 near = offset - slack, far = offset + slack;
+    // Bit 4c where the ray may meet child c before `end`.
+    __device__ uint32_t meets(float3 corner, const uint4 *sides, float end) const {
+        float3 near = corner * inverse + this->near, far = corner * inverse + this->far;
         end += fabsf(end) * (16.0f * U);
-        uint2 near_x = make_uint2(node.low_xy.x, node.low_xy.y), near_y = make_uint2(node.low_xy.z, node.low_xy.w);
-        uint2 near_z = make_uint2(node.low_z_high_x.x, node.low_z_high_x.y);
-        uint2 far_x = make_uint2(node.low_z_high_x.z, node.low_z_high_x.w);
-        uint2 far_y = make_uint2(node.high_yz.x, node.high_yz.y), far_z = make_uint2(node.high_yz.z, node.high_yz.w);
-        auto swap = [](uint2 &a, uint2 &b) { uint2 c = a; a = b; b = c; };
-        if (inverse.x < 0.0f) swap(near_x, far_x);
-        if (inverse.y < 0.0f) swap(near_y, far_y);
-        if (inverse.z < 0.0f) swap(near_z, far_z);
-        uint32_t met = 0;
+        uint4 rows[6] = {sides[near_rows.x],     sides[near_rows.y],     sides[near_rows.z],
+                         sides[3 - near_rows.x], sides[5 - near_rows.y], sides[7 - near_rows.z]};
+        uint32_t gaps = 0;
 #pragma unroll
-        for (int child = 0; child < 8; child++) {
-            auto plane = [&](uint2 bytes, float step, float first) {
-                uint32_t word = child < 4 ? bytes.x : bytes.y;
-                return (float)((word >> (child % 4 * 8)) & 0xff) * step + first;
+        for (int child = 7; child >= 0; child--) {
+            auto side = [&](const uint4 &row) {
+                uint32_t word = child % 4 == 0 ? row.x : child % 4 == 1 ? row.y : child % 4 == 2 ? row.z : row.w;
+                return __uint_as_float(child < 4 ? word << 16 : word);
             };
-            float first = fmaxf(fmaxf(plane(near_x, step.x, near.x), plane(near_y, step.y, near.y)),
-                                fmaxf(plane(near_z, step.z, near.z), start));
-            float last = fminf(fminf(plane(far_x, step.x, far.x), plane(far_y, step.y, far.y)),
-                               fminf(plane(far_z, step.z, far.z), end));
-            met |= (first <= last ? 1u : 0u) << child;
+            float first = fmaxf(fmaxf(side(rows[0]) * inverse.x + near.x, side(rows[1]) * inverse.y + near.y),
+                                fmaxf(side(rows[2]) * inverse.z + near.z, start));
+            float last = fminf(fminf(side(rows[3]) * inverse.x + far.x, side(rows[4]) * inverse.y + far.y),
+                               fminf(side(rows[5]) * inverse.z + far.z, end));
+            gaps = gaps << 4 | __float_as_uint(last - first) >> 28;
         }
-        return met;
+        return ~gaps >> 3 & FIRST_OF_FOUR;
     }
 
     __device__ uint32_t in_order(uint32_t bits) const {
-        if (octant & 1) bits = ((bits & 0x55) << 1) | ((bits >> 1) & 0x55);
-        if (octant & 2) bits = ((bits & 0x33) << 2) | ((bits >> 2) & 0x33);
-        if (octant & 4) bits = ((bits & 0x0f) << 4) | (bits >> 4);
+        if (octant & 4) bits = ((bits & 0x01010101) << 4) | ((bits >> 4) & 0x01010101);
+        if (octant & 8) bits = ((bits & 0x00110011) << 8) | ((bits >> 8) & 0x00110011);
+        if (octant & 16) bits = bits << 16 | bits >> 16;
         return bits;
     }
 };
 
-__device__ uint32_t sum_of_nibbles(uint32_t nibbles) {
-    return ((nibbles & 0x0f0f0f0f) + ((nibbles >> 4) & 0x0f0f0f0f)) * 0x01010101 >> 24;
-}
-
 template <bool ANY>
 __device__ Hit walk(Ray ray, const Node *__restrict__ nodes, const float4 *__restrict__ spheres) {
     Slabs slabs(ray, nodes);
-    float end = ray.t_max * slabs.unit;
+    Line line(ray);
     Hit hit = {NONE_T, NONE};
     uint2 stack[MAX_DEPTH];
     int height = 0;
-    uint32_t first = ROOT, group = 0x80000000;
+    uint32_t first = ROOT, group = 0x10000000;
     for (;;) {
-        int bit = 31 - __clz(group);
+        int bit = 31 - __clz(group & FIRST_OF_FOUR);
         group ^= 1u << bit;
-        if (group > 0xffffff) stack[height++] = make_uint2(first, group);
-        uint32_t place = (uint32_t)(bit - 24) ^ slabs.octant;
-        const Node node = nodes[first + __popc(group & 0xff & ((1u << place) - 1))];
-        uint32_t met = slabs.meets(node, end), inner = node.grid.w >> 24, counts = node.links.z;
-        for (uint32_t leaves = met & ~inner; leaves; leaves &= leaves - 1) {
-            int child = __ffs(leaves) - 1;
-            uint32_t index = node.links.y + sum_of_nibbles(counts & ((1u << (4 * child)) - 1));
-            uint32_t last = index + ((counts >> (4 * child)) & 15);
-            for (; index < last; index++) {
-                float t = robust(spheres[index], ray);
-                if (t < ray.t_max) {
-                    if (ANY) return {t, index};
-                    if (t < hit.t || index < hit.sphere) hit = {t, index};
-                    ray.t_max = nextafterf(t, NONE_T);
-                    end = ray.t_max * slabs.unit;
-                }
+        if (group & FIRST_OF_FOUR) stack[height++] = make_uint2(first, group);
+        uint32_t before = group & ~FIRST_OF_FOUR & ((1u << (bit ^ slabs.octant)) - 1);
+        const Node &node = nodes[first + __popc(before)];
+        const uint4 corner = node.corner, links = node.links;
+        uint32_t met = slabs.meets(point(corner), node.sides, ray.t_max * slabs.unit), inner = corner.w;
+        auto index_of = [&](int bit) { return links.y + __popc(links.z & ((1u << bit) - 1)); };
+        uint32_t candidates = (met * 15) & links.z;
+        met &= inner >> 1;
+        if (ANY) {
+            uint32_t leaves = candidates;
+            candidates = 0;
+            for (; leaves; leaves &= leaves - 1) {
+                int bit = __ffs(leaves) - 1;
+                candidates |= (uint32_t)line.may_hit(spheres[index_of(bit)]) << bit;
             }
         }
-        first = node.links.x;
-        group = slabs.in_order(met & inner) << 24 | inner;
-        if ((met & inner) == 0) {
+        for (; candidates; candidates &= candidates - 1) {
+            uint32_t index = index_of(__ffs(candidates) - 1);
+            float t = robust(spheres[index], ray);
+            if (t < ray.t_max) {
+                if (ANY) return {t, index};
+                if (t < hit.t || index < hit.sphere) hit = {t, index};
+                ray.t_max = nextafterf(t, NONE_T);
+            }
+        }
+        first = links.x;
+        group = slabs.in_order(met) | inner;
+        if (met == 0) {
             if (height == 0) return hit;
             uint2 next = stack[--height];
             first = next.x, group = next.y;

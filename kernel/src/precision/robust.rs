@@ -42,17 +42,16 @@ impl Precision for Robust {
             let root = (a * discriminant).sqrt();
             // |q|, a sum of numbers that are not negative; zero only where both roots are.
             let size = b.abs() + root;
-            if size > f32::MAX {
-                // Far outside of the domain: |d| above 2⁶⁰ or so.
-                return Hit::NONE_T;
-            }
             let outer = size / a;
             let inner = if size > 0.0 { c / size } else { 0.0 };
-            if b < 0.0 {
-                choose_root(inner, outer, ray)
+            let (near, far) = if b < 0.0 {
+                (inner, outer)
             } else {
-                choose_root(-outer, -inner, ray)
-            }
+                (-outer, -inner)
+            };
+            let t = choose_root(near, far, ray);
+            // Infinite only far outside of the domain: |d| above 2⁶⁰ or so.
+            if size > f32::MAX { Hit::NONE_T } else { t }
         } else {
             Hit::NONE_T
         }
