@@ -14,10 +14,10 @@ const HEADER_WORDS: usize = 5;
 
 /// Opcodes, storage classes and decorations from the SPIR-V specification.
 mod op {
+    pub(super) const NAME: u32 = 5;
     pub(super) const ENTRY_POINT: u32 = 15;
     pub(super) const EXECUTION_MODE: u32 = 16;
     pub(super) const CAPABILITY: u32 = 17;
-    pub(super) const NAME: u32 = 5;
     pub(super) const SPEC_CONSTANT: u32 = 50;
     pub(super) const FUNCTION: u32 = 54;
     pub(super) const FUNCTION_END: u32 = 56;

@@ -380,7 +380,6 @@ fn make_node<'a>(
     for (part, place) in parts.into_iter().zip(places) {
         sorted[place] = Some(part);
     }
-    // The first four before the last: which half of a word is whose matters.
     let boxes = sorted.each_ref().map(|part| {
         part.as_ref().map_or((CLOSED_LOW, CLOSED_HIGH), |part| {
             sides(&part.bounds, corner)
