@@ -5,6 +5,7 @@ use glam::Vec3;
 use proptest::prelude::*;
 use spherule::accuracy::oracle::Intersection;
 use spherule::accuracy::ulp;
+use spherule::kernel::bounds::Line;
 use spherule::kernel::precision::intersect;
 use spherule::kernel::{Hit, Ray, Rung, Sphere};
 
@@ -23,7 +24,7 @@ fn radius() -> impl Strategy<Value = f32> {
 }
 
 /// A ray that passes the sphere at a distance of `off` radii from its centre, from anywhere: most
-/// lines through random points miss by far, and tell nothing.
+/// lines through random points miss by far, and tell nothing. One in three begins before its origin.
 fn aimed() -> impl Strategy<Value = (Ray, Sphere)> {
     (
         vector(),
@@ -32,13 +33,23 @@ fn aimed() -> impl Strategy<Value = (Ray, Sphere)> {
         vector(),
         -1.2_f32..1.2,
         -10_i32..10,
+        -1.0_f32..2.0,
     )
         .prop_filter_map(
             "the direction is in the domain",
-            |(origin, center, radius, aside, off, scale)| {
+            |(origin, center, radius, aside, off, scale, start)| {
                 let target = center + aside.try_normalize()? * (off * radius);
-                let direction = (target - origin).try_normalize()? * 2.0_f32.powi(scale);
-                Some((Ray::new(origin, direction), Sphere::new(center, radius)))
+                let toward = target - origin;
+                let length = 2.0_f32.powi(scale);
+                let mut ray = Ray::new(origin, toward.try_normalize()? * length);
+                if start < 0.0 {
+                    // Twice as far behind as the target is ahead, or ahead as it is behind.
+                    ray.t_min = 4.0 * start * toward.length() / length;
+                    if start < -0.5 {
+                        ray.direction = -ray.direction;
+                    }
+                }
+                Some((ray, Sphere::new(center, radius)))
             },
         )
 }
@@ -60,6 +71,27 @@ proptest! {
         if let (Some(found), Some(truth)) = (found, truth) {
             prop_assert!(ulp::distance(found, truth) <= 1, "{found:e} {truth:e}");
         }
+    }
+
+    /// What the bounds say is certain is what every rung above the textbook's finds.
+    #[test]
+    fn bounds_are_certain((ray, sphere) in aimed()) {
+        let line = Line::of(&ray);
+        let bounds = line.bounds(sphere);
+        prop_assert!(!(bounds.misses & bounds.hits));
+        for rung in [Rung::Robust, Rung::Compensated, Rung::Double, Rung::Certified] {
+            let found = answer(rung, &ray, sphere);
+            if bounds.misses {
+                prop_assert_eq!(found, None, "{} {:?}", rung.name(), bounds);
+            }
+            if bounds.hits {
+                let t = found.map_or(f32::NAN, |t| t * line.unit);
+                let is_within = (bounds.low..=bounds.high).contains(&t);
+                prop_assert!(is_within, "{} {t} {bounds:?}", rung.name());
+            }
+        }
+        let is_hit = Rung::ALL.into_iter().any(|rung| answer(rung, &ray, sphere).is_some());
+        prop_assert!(line.may_hit(sphere) | !is_hit);
     }
 
     /// Outside of the margin on |Δ| / (a r²), the class is right; and t is within 1 ulp where c has

@@ -412,6 +412,22 @@ pub fn catalogue() -> Vec<Case> {
             1.0,
         );
     }
+    // t = −4 and t = −2, exactly.
+    for (t_min, t_max) in [
+        (-5.0, 0.0_f32),
+        (-4.0, -2.0),
+        ((-4.0_f32).next_down(), -4.0),
+        ((-4.0_f32).next_up(), -2.0),
+        ((-4.0_f32).next_up(), (-2.0_f32).next_up()),
+        (-3.0, 1.0),
+        (-1.0, 1.0),
+    ] {
+        probes = probes.truth(
+            Ray::within(Vec3::ZERO, Vec3::Z, t_min, t_max),
+            v(0.0, 0.0, -3.0),
+            1.0,
+        );
+    }
     cases.push(probes.case(18, "a root on either side of t_min and t_max", ALL));
 
     let mut probes = Probes::new();

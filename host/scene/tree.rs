@@ -900,7 +900,7 @@ mod tests {
                     assert_eq!(found, brute, "{name} {ray:?}");
                     hits += usize::from(found.is_some());
                     let shadow = is_occluded_in_tree(rung, ray, &grown.nodes, spheres);
-                    assert_eq!(shadow, brute.is_some());
+                    assert_eq!(shadow, brute.is_some(), "{name} {rung} {ray:?}");
                 }
             }
             assert!(hits > 3000, "{name}: {hits} hits tell little");

@@ -177,7 +177,7 @@ struct Walk {
     /// Which of a node's rows of sides are near ones, and which are far.
     near_rows: [usize; 3],
     far_rows: [usize; 3],
-    /// The ray's interval as the planes count it.
+    /// The start of the ray's interval, which the planes count from, and its end as they count it.
     start: f32,
     end: f32,
     /// The largest key that is of interest.
@@ -217,8 +217,8 @@ impl Walk {
     /// What is beyond `t` is of no interest any more.
     #[inline(always)]
     fn end_at(&mut self, t: f32) {
-        self.end = Slabs::widened_end(t * self.unit);
-        // Where parameters below zero count, all of them have the key of zero.
+        self.end = Slabs::widened_end(t * self.unit - self.start);
+        // A ray that ends before it starts has no boxes.
         self.last_key = (self.end.max(0.0).to_bits() | 7).cast_signed();
     }
 
@@ -317,7 +317,7 @@ impl Walk {
         let far_z = row(self.far_rows[2], inverse_z, splat!(far, 2));
         let first = _mm256_max_ps(
             _mm256_max_ps(near_x, near_y),
-            _mm256_max_ps(near_z, _mm256_set1_ps(self.start)),
+            _mm256_max_ps(near_z, _mm256_setzero_ps()),
         );
         let last = _mm256_min_ps(
             _mm256_min_ps(far_x, far_y),

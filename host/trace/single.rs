@@ -6,11 +6,12 @@
 //! are tested side by side, too; without it the kernel's walk does that.
 
 use glam::{Mat4, Vec4};
-use spherule_kernel::candidates::{Line, SLACK};
+use spherule_kernel::bounds::Line;
+use spherule_kernel::candidates::SLACK;
 use spherule_kernel::nearest::{MovingSpheres, Spheres};
 use spherule_kernel::precision::intersect;
 use spherule_kernel::traversal::Traversal;
-use spherule_kernel::tree::{Node, is_occluded_in_tree, nearest_hit_in_tree, next_up};
+use spherule_kernel::tree::{Node, is_occluded_in_tree, nearest_hit_in_tree};
 use spherule_kernel::{Hit, Ray, Rung, Sphere};
 
 #[cfg(target_arch = "x86_64")]
@@ -179,7 +180,7 @@ impl Search {
                         self.hit = Hit { t, sphere };
                     }
                     // One as near is still of interest, if its index is lower.
-                    self.ray.t_max = next_up(t);
+                    self.ray.t_max = t.next_up();
                 }
             }
             at += LANES as u32;
@@ -191,11 +192,7 @@ impl Search {
     fn sift(&self, spheres: [Sphere; LANES]) -> u32 {
         let [first, second, third, fourth] = spheres.map(Sphere::to_vec4);
         let rows = Mat4::from_cols(first, second, third, fourth).transpose();
-        let Line {
-            origin,
-            direction,
-            a,
-        } = self.line;
+        let (origin, direction) = (self.line.origin, self.line.direction);
         let x = rows.x_axis - Vec4::splat(origin.x);
         let y = rows.y_axis - Vec4::splat(origin.y);
         let z = rows.z_axis - Vec4::splat(origin.z);
@@ -205,7 +202,7 @@ impl Search {
             + y * Vec4::splat(direction.y)
             + z * Vec4::splat(direction.z);
         let c = (oo - rr) - Vec4::splat(SLACK) * (oo + rr);
-        let discriminant = b * b - Vec4::splat(a) * c;
+        let discriminant = b * b - Vec4::splat(self.line.a) * c;
         // A number that is none is asked about, too.
         !discriminant.cmplt(Vec4::splat(Line::SMALLEST)).bitmask() & 0xf
     }

@@ -10,7 +10,6 @@
 
 use glam::{UVec4, Vec3, Vec4};
 
-use crate::ray::Ray;
 use crate::sphere::Sphere;
 use crate::surface::unit;
 
@@ -58,49 +57,6 @@ impl Shared {
     pub fn discriminant(self, unit: Vec3) -> f32 {
         let b = self.0.truncate().dot(unit);
         b * b - self.0.w
-    }
-}
-
-/// A ray's line, for one sphere after the other.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Line {
-    /// Where the ray starts.
-    pub origin: Vec3,
-    /// Its direction, whose largest component was brought between 1 and 2.
-    pub direction: Vec3,
-    /// The direction's squared length.
-    pub a: f32,
-}
-
-impl Line {
-    /// What a discriminant may lose where its terms are no normal numbers.
-    pub const SMALLEST: f32 = -1e-36;
-
-    /// Of a ray.
-    #[inline]
-    #[must_use]
-    pub fn of(ray: &Ray) -> Self {
-        let direction = ray.direction * power_of_two_under(ray.direction);
-        Self {
-            origin: ray.origin,
-            direction,
-            a: direction.dot(direction),
-        }
-    }
-
-    /// Whether any rung may find a hit. Where a number is none, it is to be asked.
-    #[expect(
-        clippy::neg_cmp_op_on_partial_ord,
-        reason = "a number that is none is not smaller"
-    )]
-    #[inline]
-    #[must_use]
-    pub fn may_hit(&self, sphere: Sphere) -> bool {
-        let o = sphere.center() - self.origin;
-        let (oo, rr) = (o.dot(o), sphere.radius() * sphere.radius());
-        let b = o.dot(self.direction);
-        let c = (oo - rr) - SLACK * (oo + rr);
-        !(b * b - self.a * c < Self::SMALLEST)
     }
 }
 

@@ -54,7 +54,7 @@ pub fn render(
                 material_ids,
                 materials,
                 pixel,
-                pixels[index],
+                &pixels[index],
             );
         }
     }
@@ -164,7 +164,7 @@ pub fn render_by_tiles(
                         let end_t = pick(t_max.x, t_max.y, t_max.z, t_max.w, which);
                         // SAFETY: `end` is at most the number of spheres.
                         let sphere = unsafe { *spheres.index_unchecked(index as usize) };
-                        let mut ray = launch.ray(pixel_of(pixel, which), Pixel::default());
+                        let mut ray = launch.ray(pixel_of(pixel, which), &Pixel::default());
                         ray.t_max = end_t;
                         let t = intersect(rung, sphere, &ray);
                         if t < end_t {
@@ -194,14 +194,20 @@ pub fn render_by_tiles(
         let pixel = pixel_of(pixel, which);
         let place = place_of(pixels.len(), launch, pixel);
         if place < pixels.len() {
-            let held = pixels[place];
-            let ray = launch.ray(pixel, held);
+            let ray = launch.ray(pixel, &pixels[place]);
             let hit = Hit {
                 t: pick(t_max.x, t_max.y, t_max.z, t_max.w, which),
                 sphere: pick(found.x, found.y, found.z, found.w, which),
             };
-            pixels[place] =
-                launch.pixel(shading, &ray, hit, spheres, material_ids, materials, held);
+            pixels[place] = launch.pixel(
+                shading,
+                &ray,
+                hit,
+                spheres,
+                material_ids,
+                materials,
+                &pixels[place],
+            );
         }
         which += 1;
     }
@@ -211,11 +217,11 @@ pub fn render_by_tiles(
 #[inline]
 fn ray_of(pixels: &[Pixel], launch: &Launch, pixel: UVec2) -> Ray {
     let place = place_of(pixels.len(), launch, pixel);
-    let mut held = Pixel::default();
     if place < pixels.len() {
-        held = pixels[place];
+        launch.ray(pixel, &pixels[place])
+    } else {
+        launch.ray(pixel, &Pixel::default())
     }
-    launch.ray(pixel, held)
 }
 
 /// One of the four pixels that a thread has: the others are 8 to the right, below, and both.

@@ -116,7 +116,7 @@ pub fn render_pixel(
     material_ids: &[u32],
     materials: &[Material],
     pixel: UVec2,
-    previous: Pixel,
+    previous: &Pixel,
 ) -> Pixel {
     let ray = launch.ray(pixel, previous);
     let hit = if has_tree == 1 {
@@ -138,10 +138,10 @@ pub fn render_pixel(
 
 impl Launch {
     /// The ray through a pixel, which counts from the upper left of the tile and holds `previous`: not
-    /// farther than that.
+    /// farther than that. The first launch of a tile does not read it.
     #[inline]
     #[must_use]
-    pub fn ray(&self, pixel: UVec2, previous: Pixel) -> Ray {
+    pub fn ray(&self, pixel: UVec2, previous: &Pixel) -> Ray {
         let at = self.tile_origin + pixel;
         let mut ray = self.camera.pixel_ray(at, self.image_size);
         if self.first_of_tile == 0 {
@@ -150,7 +150,8 @@ impl Launch {
         ray
     }
 
-    /// What a pixel that holds `previous` must hold after its ray has found `hit`.
+    /// What a pixel that holds `previous` must hold after its ray has found `hit`. The first launch of a tile does
+    /// not read it.
     #[expect(
         clippy::too_many_arguments,
         reason = "these are the kernel's bindings, one each"
@@ -165,11 +166,11 @@ impl Launch {
         spheres: &[Sphere],
         material_ids: &[u32],
         materials: &[Material],
-        previous: Pixel,
+        previous: &Pixel,
     ) -> Pixel {
         let mut result = Pixel::new(self.background, Hit::NONE_T);
         if self.first_of_tile == 0 {
-            result = previous;
+            result = *previous;
         }
         if hit.is_some() {
             let index = hit.sphere as usize;

@@ -1,22 +1,22 @@
-//! Single instructions of a GPU that Rust's own functions do not become: those mind what happens to a
-//! NaN or to zero. Runs on the GPU and on the CPU.
+//! Single instructions of a GPU that Rust's own functions do not become: those compare and choose, or mind
+//! what happens to zero. Runs on the GPU and on the CPU.
 
 #[cfg(target_arch = "spirv")]
 use core::arch::asm;
 
-/// The larger of two numbers, neither of them a NaN.
+/// The larger of two integers.
 #[inline]
 #[must_use]
-pub fn max(a: f32, b: f32) -> f32 {
+pub fn larger(a: i32, b: i32) -> i32 {
     #[cfg(target_arch = "spirv")]
     {
-        let result: f32;
-        // SAFETY: FMax of GLSL.std.450, which touches no memory.
+        let result: i32;
+        // SAFETY: SMax of GLSL.std.450, which touches no memory.
         unsafe {
             asm!(
                 "%glsl = OpExtInstImport \"GLSL.std.450\"",
-                "%float = OpTypeFloat 32",
-                "{result} = OpExtInst %float %glsl 40 {a} {b}",
+                "%int = OpTypeInt 32 1",
+                "{result} = OpExtInst %int %glsl 42 {a} {b}",
                 a = in(reg) a,
                 b = in(reg) b,
                 result = out(reg) result,
@@ -28,19 +28,19 @@ pub fn max(a: f32, b: f32) -> f32 {
     a.max(b)
 }
 
-/// The smaller of two numbers, neither of them a NaN.
+/// The smaller of two integers.
 #[inline]
 #[must_use]
-pub fn min(a: f32, b: f32) -> f32 {
+pub fn smaller(a: i32, b: i32) -> i32 {
     #[cfg(target_arch = "spirv")]
     {
-        let result: f32;
-        // SAFETY: FMin of GLSL.std.450, which touches no memory.
+        let result: i32;
+        // SAFETY: SMin of GLSL.std.450, which touches no memory.
         unsafe {
             asm!(
                 "%glsl = OpExtInstImport \"GLSL.std.450\"",
-                "%float = OpTypeFloat 32",
-                "{result} = OpExtInst %float %glsl 37 {a} {b}",
+                "%int = OpTypeInt 32 1",
+                "{result} = OpExtInst %int %glsl 39 {a} {b}",
                 a = in(reg) a,
                 b = in(reg) b,
                 result = out(reg) result,
@@ -108,7 +108,7 @@ mod tests {
 
     #[test]
     fn they_do_what_their_names_say() {
-        assert_eq!((max(-1.0, 2.0), min(-1.0, 2.0)), (2.0, -1.0));
+        assert_eq!((larger(-1, 2), smaller(-1, 2)), (2, -1));
         for bit in 0..32 {
             assert_eq!(highest_bit((1 << bit) | ((1 << bit) / 3)), bit);
             assert_eq!(lowest_bit(!0 << bit), bit);

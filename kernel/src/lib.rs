@@ -14,6 +14,7 @@
 //! | [`arithmetic`] | floats whose rounding errors are kept |
 //! | [`precision`] | the ladder: ways to intersect a ray with a sphere |
 //! | [`nearest`] | the nearest hit of a ray among a slice of spheres, and whether there is any |
+//! | [`bounds`] | what few operations tell of a ray and a sphere for certain |
 //! | [`candidates`] | which of many spheres a rung must be asked about |
 //! | [`tree`] | [`tree::Node`]: boxes around spheres, so that a ray looks at few |
 //! | [`traversal`] | what finds the hits of light paths |
@@ -46,6 +47,7 @@
 #![deny(missing_docs)]
 
 pub mod arithmetic;
+pub mod bounds;
 pub mod camera;
 pub mod canary;
 pub mod candidates;

@@ -12,11 +12,11 @@
 //! Boxes are rounded outwards. With u = 2⁻²⁴, P a node's corner, v a side's distance from it, O the ray's origin
 //! and i = 1/d, a plane is met at
 //!
-//! > v i + (P i + (−O i ∓ S)),
+//! > v i + (P i + (−O i − s ∓ S)),
 //!
-//! computed to within 5u(|P| + |O| + v)|i|, fused or not, division off by two units. Neither |P| nor v
+//! s the start of the ray, computed to within 5u((|P| + |O| + v)|i| + |s|), fused or not, division off by two units. Neither |P| nor v
 //! is beyond twice the size or the sides of the tree's [`Extent`], whose corners are L and H, so that one S serves all nodes: per
-//! axis 16u(max(|L|, |H|) + |O| + 2(H − L))|i|, by which far planes are moved away and near ones nearer. A direction's
+//! axis 16u((max(|L|, |H|) + |O| + 2(H − L))|i| + |s|), by which far planes are moved away and near ones nearer. A direction's
 //! component below 2⁻⁶⁴ of its largest is taken for that: the ray is off by 2⁻⁶⁴ of its way then.
 //!
 //! The rungs below [`Rung::Compensated`] find hits where there are none, and a box must not keep them
@@ -39,12 +39,14 @@ use spirv_std::arch::IndexUnchecked;
 #[cfg(target_arch = "spirv")]
 use spirv_std::num_traits::Float as _;
 
-use crate::candidates::{Line, power_of_two_under};
+use crate::bounds::Line;
+use crate::candidates::power_of_two_under;
 use crate::hit::Hit;
-use crate::instructions::{highest_bit, lowest_bit, max, min};
+use crate::instructions::{highest_bit, larger, lowest_bit, smaller};
 use crate::nearest::Spheres;
-use crate::precision::{Rung, intersect};
+use crate::precision::{Precision, Robust, Rung, Textbook, intersect};
 use crate::ray::Ray;
+use crate::sphere::Sphere;
 
 /// Up to eight boxes, and what is in them: a node each, or one to four spheres.
 ///
@@ -52,16 +54,16 @@ use crate::ray::Ray;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Node {
+    /// How far from the corner the children's sides are: the smallest x, y, z, then the largest. Of a
+    /// row's words each holds two children, [`lower`](Node::lower) the first four and
+    /// [`upper`](Node::upper) the last four.
+    pub sides: [UVec4; 6],
     /// The bits of the corner x, y, z; and which children are nodes: bit 4c + 1 where child c is one.
     pub corner: UVec4,
     /// The index of the first child that is a node, the others follow; the index of the first sphere in
     /// any child, the others follow, child by child; the spheres, a bit each: bits 4c to 4c + n − 1 where child c has n;
     /// and nothing.
     pub links: UVec4,
-    /// How far from the corner the children's sides are: the smallest x, y, z, then the largest. Of a
-    /// row's words each holds two children, [`lower`](Node::lower) the first four and
-    /// [`upper`](Node::upper) the last four.
-    pub sides: [UVec4; 6],
 }
 
 impl Node {
@@ -199,9 +201,9 @@ pub struct Slabs {
     pub far: Vec3,
     /// Which of a node's rows of sides a ray meets first, an axis each.
     pub near_rows: UVec3,
-    /// What a parameter of the ray is, times this, as the planes count it.
+    /// What a parameter of the ray is, times this, less `start`, as the planes count it.
     pub unit: f32,
-    /// The start of the ray's interval.
+    /// The start of the ray's interval, times `unit`: to the planes it is zero.
     pub start: f32,
     /// Bit 2 + k set where the direction is positive along axis k.
     pub octant: u32,
@@ -223,7 +225,9 @@ impl Slabs {
             + ray.origin.abs()
             + (world.high - world.low) * 2.0;
         let off = size * (16.0 * U) + world.widening(rung, ray.origin);
-        let (first, slack) = (-ray.origin * inverse, inverse.abs() * off);
+        let start = ray.t_min * unit;
+        let first = -ray.origin * inverse - start;
+        let slack = inverse.abs() * off + start.abs() * (16.0 * U);
         let backwards = |x: f32| if x < 0.0 { 1 } else { 0 };
         let backwards = UVec3::new(backwards(d.x), backwards(d.y), backwards(d.z));
         Self {
@@ -232,7 +236,7 @@ impl Slabs {
             far: first + slack,
             near_rows: UVec3::new(0, 1, 2) + backwards * 3,
             unit,
-            start: ray.t_min * unit,
+            start,
             octant: 28 - (backwards.x << 2 | backwards.y << 3 | backwards.z << 4),
         }
     }
@@ -251,7 +255,6 @@ impl Slabs {
             inverse: self.inverse,
             near: corner * self.inverse + self.near,
             far: corner * self.inverse + self.far,
-            start: self.start,
             end: Self::widened_end(end),
         };
         let row = |row: u32| {
@@ -300,7 +303,6 @@ struct Boxes {
     inverse: Vec3,
     near: Vec3,
     far: Vec3,
-    start: f32,
     end: f32,
 }
 
@@ -310,9 +312,16 @@ impl Boxes {
     fn gap(&self, near: Vec3, far: Vec3) -> u32 {
         let near = near * self.inverse + self.near;
         let far = far * self.inverse + self.far;
-        let near = max(max(near.x, near.y), max(near.z, self.start));
-        let far = min(min(far.x, far.y), min(far.z, self.end));
-        (far - near).to_bits()
+        // Of floats that are not negative the bits are in order, too, and a GPU takes three integers at once. A
+        // negative one is never the largest of those with zero; and as the smallest, whichever it is, it makes the gap
+        // negative.
+        let bits = |x: f32| x.to_bits() as i32;
+        let first = larger(larger(larger(bits(near.x), bits(near.y)), bits(near.z)), 0);
+        let last = smaller(
+            smaller(smaller(bits(far.x), bits(far.y)), bits(far.z)),
+            bits(self.end),
+        );
+        (f32::from_bits(last as u32) - f32::from_bits(first as u32)).to_bits()
     }
 }
 
@@ -411,8 +420,42 @@ pub fn work_in_tree<S: Spheres + ?Sized>(
 
 /// The index of the sphere that has this bit in a node's links.
 #[inline]
-fn sphere_at(links: UVec4, bit: u32) -> u32 {
-    links.y + (links.z & ((1 << bit) - 1)).count_ones()
+fn sphere_at(links: UVec4, bit: u32, count: u32) -> u32 {
+    within(links.y + (links.z & ((1 << bit) - 1)).count_ones(), count)
+}
+
+/// [`intersect`] of the rungs that are not lazy.
+#[inline]
+fn intersect_at_once(rung: u32, sphere: Sphere, ray: &Ray) -> f32 {
+    if rung == Rung::Robust.to_u32() {
+        Robust::intersect(sphere, ray)
+    } else {
+        Textbook::intersect(sphere, ray)
+    }
+}
+
+/// The two lowest bits of some that are set, the same twice if there is one; and the others.
+#[inline]
+fn take_two(bits: u32) -> (u32, u32, u32) {
+    let one = lowest_bit(bits);
+    let mut rest = bits & (bits - 1);
+    let mut two = one;
+    if rest != 0 {
+        two = lowest_bit(rest);
+        rest &= rest - 1;
+    }
+    (one, two, rest)
+}
+
+/// An index below a length that is not zero. The links of a tree are, but that a slice is one is not known on the CPU.
+/// A GPU's buffers are checked by their driver (`robustBufferAccess`).
+#[inline]
+fn within(index: u32, length: u32) -> u32 {
+    if cfg!(target_arch = "spirv") {
+        index
+    } else {
+        index.min(length - 1)
+    }
 }
 
 /// The nearest hit, or any.
@@ -430,13 +473,28 @@ fn walk<const ANY: bool, S: Spheres + ?Sized>(
     }
     let slabs = Slabs::of(rung, ray, nodes);
     let line = Line::of(ray);
+    // Rungs that take long are asked about the nearest sphere only, when it is found.
+    let is_lazy = rung >= Rung::Compensated.to_u32();
+    let ray = &Ray {
+        t_max: ray.end(),
+        ..*ray
+    };
     // What changes on the way is kept apart from what does not, and is little: compilers for GPUs carry a
-    // whole struct from round to round if any of it changes, and copy what they carry.
-    let mut t_max = ray.end();
-    let mut hit_sphere = Hit::NONE_SPHERE;
+    // whole struct from round to round if any of it changes, and copy what they carry. Inner loops end where
+    // they may go on, for the same reason.
+    //
+    // The nearest answer so far, and its sphere.
+    let mut t = ray.t_max;
+    let mut hit_sphere = 0;
+    // The end of the ray, as the line counts it; and if it is lazy where the nearest sphere may begin, which is before
+    // the end if the rung was not asked.
+    let mut end = t * line.unit;
+    let mut low = end;
 
-    let mut stack = [MaybeUninit::<UVec2>::uninit(); Node::MAX_DEPTH];
-    let mut height = 0;
+    // Below the last group is an empty one.
+    let mut stack = [MaybeUninit::<UVec2>::uninit(); Node::MAX_DEPTH + 1];
+    stack[0] = MaybeUninit::new(UVec2::ZERO);
+    let mut height = 1;
     // A group of nodes: where the first is, and which are to be visited (bits 4c, c in the order of the visit),
     // which are there (bits 4c + 1). The root is one alone.
     let mut first = Node::ROOT;
@@ -445,110 +503,150 @@ fn walk<const ANY: bool, S: Spheres + ?Sized>(
         // The next to be visited.
         let bit = highest_bit(group & FIRST_OF_FOUR);
         group ^= 1 << bit;
-        if (group & FIRST_OF_FOUR != 0) & (height < Node::MAX_DEPTH) {
+        if (group & FIRST_OF_FOUR != 0) & (height <= Node::MAX_DEPTH) {
             let kept = MaybeUninit::new(UVec2::new(first, group));
             // SAFETY: `height` is below the array's length.
             unsafe { *stack.index_unchecked_mut(height) = kept };
             height += 1;
         }
         let before = group & !FIRST_OF_FOUR & ((1 << (bit ^ slabs.octant)) - 1);
-        // A tree's links are within it; that this one is one is not known, so that it is cut.
-        let at = (first + before.count_ones()).min(nodes.len() as u32 - 1);
+        let at = within(first + before.count_ones(), nodes.len() as u32);
         // SAFETY: `at` is below the slice's length, which is not zero.
         let node = unsafe { nodes.index_unchecked(at as usize) };
         let (corner, links) = (load(&node.corner), load(&node.links));
         let inner = corner.w;
-        let met = slabs.meets(point(corner), &node.sides, t_max * slabs.unit);
+        let met = slabs.meets(point(corner), &node.sides, end - slabs.start);
         work.nodes += 1;
 
         let mut candidates = (met * 15) & links.z;
         let mut met = met & (inner >> 1);
         work.spheres += candidates.count_ones();
-        if ANY | (rung >= Rung::Compensated.to_u32()) {
-            // Threads of a GPU wait for each other: few operations on all spheres, then many on few. Where
-            // most that are left by this are hits, and a hit is cheap, it does not pay.
+        if (is_lazy | ANY) & (candidates != 0) {
+            // Threads of a GPU wait for each other: few operations on all spheres, and many on the few that are left.
+            // Two at a time, so that what one waits for does not hold up the other.
             let mut leaves = candidates;
             candidates = 0;
-            while leaves != 0 {
-                let bit = lowest_bit(leaves);
-                leaves &= leaves - 1;
-                let index = sphere_at(links, bit).min(count - 1);
+            loop {
+                let (one, two, rest) = take_two(leaves);
+                leaves = rest;
+                let indices = [sphere_at(links, one, count), sphere_at(links, two, count)];
+                // SAFETY: both are below the number of spheres.
+                let pair = unsafe { [spheres.sphere(indices[0]), spheres.sphere(indices[1])] };
+                if is_lazy {
+                    let [first, second] = [line.bounds(pair[0]), line.bounds(pair[1])];
+                    if first.hits & (first.high < low) {
+                        (hit_sphere, low, end) = (indices[0], first.low, first.high);
+                    } else {
+                        candidates |= u32::from(first.is_open(end)) << one;
+                    }
+                    if second.hits & (second.high < low) {
+                        (hit_sphere, low, end) = (indices[1], second.low, second.high);
+                    } else {
+                        candidates |= u32::from(second.is_open(end) & (one != two)) << two;
+                    }
+                } else {
+                    candidates |= u32::from(line.may_hit(pair[0])) << one;
+                    candidates |= u32::from(line.may_hit(pair[1])) << two;
+                }
+                if (leaves == 0) | (is_lazy & ANY & (low < end)) {
+                    break;
+                }
+            }
+            if is_lazy & ANY & (low < end) {
+                candidates = 0;
+            }
+        }
+        if (is_lazy | ANY) & (candidates != 0) {
+            loop {
+                // The nearest sphere comes first, if its rung was not asked.
+                let index = if is_lazy & (low < end) {
+                    hit_sphere
+                } else {
+                    let bit = lowest_bit(candidates);
+                    candidates &= candidates - 1;
+                    sphere_at(links, bit, count)
+                };
                 // SAFETY: `index` is below the number of spheres.
                 let sphere = unsafe { spheres.sphere(index) };
-                candidates |= u32::from(line.may_hit(sphere)) << bit;
-            }
-        }
-        while candidates != 0 {
-            let bit = lowest_bit(candidates);
-            candidates &= candidates - 1;
-            let index = sphere_at(links, bit).min(count - 1);
-            // SAFETY: `index` is below the number of spheres.
-            let sphere = unsafe { spheres.sphere(index) };
-            let t = intersect(rung, sphere, &Ray { t_max, ..*ray });
-            if t < t_max {
-                // One as near is still of interest, if its index is lower.
-                let next = next_up(t);
-                if (next < t_max) | (index < hit_sphere) {
-                    hit_sphere = index;
+                let answer = intersect(rung, sphere, ray);
+                if (answer < t) | ((answer == t) & (index < hit_sphere)) {
+                    (t, hit_sphere) = (answer, index);
                 }
-                t_max = next;
-                if ANY {
-                    candidates = 0;
+                end = t * line.unit;
+                low = end;
+                // Not by making `candidates` zero above: compilers leave the loop from there then, which Mesa 22's
+                // llvmpipe was seen to get wrong.
+                if (candidates == 0) | (ANY & (t < ray.t_max)) {
+                    break;
                 }
             }
         }
-        if ANY & (hit_sphere != Hit::NONE_SPHERE) {
+        if !(is_lazy | ANY) & (candidates != 0) {
+            // Most are hits, and a hit is cheap: there is nothing to sift.
+            loop {
+                let (one, two, rest) = take_two(candidates);
+                candidates = rest;
+                let indices = [sphere_at(links, one, count), sphere_at(links, two, count)];
+                // SAFETY: both are below the number of spheres.
+                let pair = unsafe { [spheres.sphere(indices[0]), spheres.sphere(indices[1])] };
+                let answers = [
+                    intersect_at_once(rung, pair[0], ray),
+                    intersect_at_once(rung, pair[1], ray),
+                ];
+                if (answers[0] < t) | ((answers[0] == t) & (indices[0] < hit_sphere)) {
+                    (t, hit_sphere) = (answers[0], indices[0]);
+                }
+                if (answers[1] < t) | ((answers[1] == t) & (indices[1] < hit_sphere)) {
+                    (t, hit_sphere) = (answers[1], indices[1]);
+                }
+                if candidates == 0 {
+                    break;
+                }
+            }
+            end = t * line.unit;
+        }
+        if ANY & ((t < ray.t_max) | (is_lazy & (low < end))) {
             // Nothing is left to be visited. A `return` out of both loops was seen to be compiled wrongly, by
             // Mesa 22's llvmpipe.
-            (met, height) = (0, 0);
+            (met, height) = (0, 1);
         }
 
         first = links.x;
         group = slabs.in_order(met) | inner;
         if met == 0 {
-            if height == 0 {
-                let mut t = Hit::NONE_T;
-                if hit_sphere != Hit::NONE_SPHERE {
-                    t = next_down(t_max);
-                }
-                return Hit {
-                    t,
-                    sphere: hit_sphere,
-                };
-            }
             height -= 1;
-            // SAFETY: `height` is below the array's length.
+            // SAFETY: `height` is below the array's length, and what is there was put there.
             let next = unsafe { (*stack.index_unchecked(height)).assume_init() };
             first = next.x;
             group = next.y;
         }
+        if group & FIRST_OF_FOUR == 0 {
+            break;
+        }
     }
-}
 
-/// The next larger float.
-#[inline]
-#[must_use]
-pub fn next_up(x: f32) -> f32 {
-    let bits = x.to_bits();
-    f32::from_bits(if x > 0.0 {
-        bits + 1
-    } else if x < 0.0 {
-        bits - 1
+    if is_lazy & (low < end) {
+        if !ANY {
+            // SAFETY: `hit_sphere` is below the number of spheres.
+            let sphere = unsafe { spheres.sphere(hit_sphere) };
+            t = intersect(rung, sphere, ray);
+        }
+        Hit {
+            t,
+            sphere: hit_sphere,
+        }
+    } else if t < ray.t_max {
+        Hit {
+            t,
+            sphere: hit_sphere,
+        }
     } else {
-        1
-    })
-}
-
-/// The next smaller float than one that [`next_up`] returned.
-#[inline]
-fn next_down(x: f32) -> f32 {
-    let bits = x.to_bits();
-    // By the sign's bit: GPUs take the smallest numbers for zero.
-    f32::from_bits(if bits >> 31 == 0 { bits - 1 } else { bits + 1 })
+        Hit::NONE
+    }
 }
 
 const _: () = {
     assert!(size_of::<Node>() == 128);
-    assert!(core::mem::offset_of!(Node, links) == 16);
-    assert!(core::mem::offset_of!(Node, sides) == 32);
+    assert!(core::mem::offset_of!(Node, corner) == 96);
+    assert!(core::mem::offset_of!(Node, links) == 112);
 };

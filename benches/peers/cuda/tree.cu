@@ -16,7 +16,7 @@ struct Hit {
 };
 
 struct Node {
-    uint4 corner, links, sides[6];
+    uint4 sides[6], corner, links;
 };
 
 constexpr float U = 1.0f / (1 << 24), NONE_T = 3.402823466e38f;

@@ -7,7 +7,7 @@
 //! f = o − (b/a)d: each component of f is off by at most 11u|o|, because |(b/a)d| ≤ |o|; so f·f is
 //! off by 22u|f||o| + 121u²o·o + 3u f·f ≤ 16u (f·f + o·o). Against r², off by u r², a line misses
 //! for certain where f·f − r² > 32u (f·f + o·o + r²). Where c is certainly positive, a ray with
-//! b > 0 leaves and misses: were b truly negative, it would be by 8u|o||d| at most, and a hit needs
+//! b > 0 that does not begin before its origin leaves and misses: were b truly negative, it would be by 8u|o||d| at most, and a hit needs
 //! b² ≥ ac. And where the ray enters, t is at least (|b| − √(a(r² − f·f + E)))/a, less 32u of its
 //! terms; beyond the end of the ray's interval the hit does not matter. Fused or not, division
 //! and root off by a few units: the factor 32 covers all of them twice over.
@@ -118,7 +118,7 @@ fn misses_for_certain(sphere: Sphere, ray: &Ray) -> bool {
     let rr = sphere.radius() * sphere.radius();
     let passes_by = ff - rr > FILTER * (ff + oo + rr);
     let is_outside = oo - rr > FILTER * (oo + rr);
-    if passes_by | (is_outside & (b > 0.0)) {
+    if passes_by | (is_outside & (b > 0.0) & (ray.t_min >= 0.0)) {
         return true;
     }
     if is_outside {

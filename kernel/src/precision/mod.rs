@@ -121,12 +121,10 @@ pub fn intersect(rung: u32, sphere: Sphere, ray: &Ray) -> f32 {
 #[inline]
 #[must_use]
 pub fn choose_root(near: f32, far: f32, ray: &Ray) -> f32 {
-    let mut t = Hit::NONE_T;
-    if (far >= ray.t_min) & (far < ray.t_max) {
-        t = far;
+    let t = if near >= ray.t_min { near } else { far };
+    if (t >= ray.t_min) & (t < ray.t_max) {
+        t
+    } else {
+        Hit::NONE_T
     }
-    if (near >= ray.t_min) & (near < ray.t_max) {
-        t = near;
-    }
-    t
 }

@@ -37,21 +37,23 @@ impl Precision for Robust {
         let radius_squared = sphere.radius() * sphere.radius();
         // Δ / a
         let discriminant = radius_squared - foot.dot(foot);
-        if discriminant >= 0.0 {
-            let c = o.dot(o) - radius_squared;
-            let root = (a * discriminant).sqrt();
-            // |q|, a sum of numbers that are not negative; zero only where both roots are.
-            let size = b.abs() + root;
-            let outer = size / a;
-            let inner = if size > 0.0 { c / size } else { 0.0 };
-            let (near, far) = if b < 0.0 {
-                (inner, outer)
-            } else {
-                (-outer, -inner)
-            };
-            let t = choose_root(near, far, ray);
-            // Infinite only far outside of the domain: |d| above 2⁶⁰ or so.
-            if size > f32::MAX { Hit::NONE_T } else { t }
+        let c = o.dot(o) - radius_squared;
+        let root = (a * discriminant).sqrt();
+        // |q|, a sum of numbers that are not negative.
+        let size = b.abs() + root;
+        let outer = size / a;
+        // No number where both roots are zero: `near` is the other then.
+        let inner = c / size;
+        let (near, far) = if b < 0.0 {
+            (inner, outer)
+        } else {
+            (-outer, -inner)
+        };
+        let t = choose_root(near, far, ray);
+        // Infinite only far outside of the domain: |d| above 2⁶⁰ or so. No branches: the threads of a GPU would
+        // wait for each other.
+        if (discriminant >= 0.0) & (size <= f32::MAX) {
+            t
         } else {
             Hit::NONE_T
         }
