@@ -11,9 +11,9 @@
 //! middle m = o·d / a, the foot of the perpendicular f = o − m d, and q = r² − f·f. In floats, fused or not,
 //! quotients off by 2.5 units and roots by 4: m is off by 14u|o|/|d|, f by 17u|o| and q by
 //!
-//! > E = 34u|f||o| + 289u² o·o + 3u f·f + 3u r² ≤ 2⁻¹⁰ f·f + 2⁻²⁹ o·o + 3u r²,
+//! > E = 34u|f||o| + 289u² o·o + 3u f·f + 3u r² ≤ 2⁻⁹ f·f + 2⁻²⁹ o·o + 3u r²,
 //!
-//! as 2xy ≤ kx² + y²/k. No rung from robust up, whose formula is this one or a better, is farther off. So
+//! as 2xy ≤ kx² + y²/k, k = 2¹⁰. No rung from robust up, whose formula is this one or a better, is farther off. So
 //! with the doubt e = 2⁻⁶ r² + 2⁻²⁸ o·o all of them have q < 0 where q < −e here, and q > 0 where q > e: E is at most e/2
 //! then, f·f being r² − q.
 //!

@@ -1,6 +1,7 @@
 // spherule's walk through its tree of boxes in CUDA, for comparison: the same nodes, in the same order,
 // with the same bounds and the same formula for a sphere (kernel/src/tree.rs, kernel/src/precision/robust.rs).
-// What differs is the language and its compiler.
+// What differs is the language and its compiler, and that spheres are asked about one at a time for the nearest: two,
+// as there, is slower here, and so is the formula without its branch.
 #include "scene.h"
 
 struct Ray {
@@ -44,13 +45,6 @@ __device__ float power_of_two_under(float3 d) {
     return __uint_as_float(0x7f000000 - (__float_as_uint(largest) & 0x7f800000));
 }
 
-__device__ float choose(float near, float far, const Ray &ray) {
-    float t = NONE_T;
-    if (far >= ray.t_min && far < ray.t_max) t = far;
-    if (near >= ray.t_min && near < ray.t_max) t = near;
-    return t;
-}
-
 __device__ float robust(float4 s, const Ray &ray) {
     float3 o = ray.origin - make_float3(s.x, s.y, s.z), d = ray.direction;
     float a = dot(d, d), b = dot(o, d);
@@ -61,9 +55,11 @@ __device__ float robust(float4 s, const Ray &ray) {
     if (!(discriminant >= 0.0f)) return NONE_T;
     float c = dot(o, o) - rr;
     float size = fabsf(b) + sqrtf(a * discriminant);
-    float outer = size / a, inner = size > 0.0f ? c / size : 0.0f;
-    float t = b < 0.0f ? choose(inner, outer, ray) : choose(-outer, -inner, ray);
-    return size > NONE_T ? NONE_T : t;
+    float outer = size / a, inner = c / size;
+    float near = b < 0.0f ? inner : -outer, far = b < 0.0f ? outer : -inner;
+    float t = near >= ray.t_min ? near : far;
+    bool hits = discriminant >= 0.0f && size <= NONE_T && t >= ray.t_min && t < ray.t_max;
+    return hits ? t : NONE_T;
 }
 
 // Whether any rung may find a hit.
@@ -101,11 +97,13 @@ struct Slabs {
         float3 size = make_float3(fmaxf(low.x, below.x), fmaxf(low.y, below.y), fmaxf(low.z, below.z));
         size = size + abs3(origin) + (high - point(nodes[0].corner)) * 2.0f;
         float wider = distance * (32.0f * U);
+        start = ray.t_min * unit;
+        float later = fabsf(start) * (16.0f * U);
         float3 slack = (size * (16.0f * U) + make_float3(wider, wider, wider)) * abs3(inverse);
-        float3 first = origin * inverse * -1.0f;
+        slack = slack + make_float3(later, later, later);
+        float3 first = origin * inverse * -1.0f - make_float3(start, start, start);
         near = first - slack, far = first + slack;
         near_rows = make_uint3(d.x < 0.0f ? 3 : 0, d.y < 0.0f ? 4 : 1, d.z < 0.0f ? 5 : 2);
-        start = ray.t_min * unit;
         octant = (d.x < 0.0f ? 0 : 4) | (d.y < 0.0f ? 0 : 8) | (d.z < 0.0f ? 0 : 16);
     }
 
@@ -122,11 +120,13 @@ struct Slabs {
                 uint32_t word = child % 4 == 0 ? row.x : child % 4 == 1 ? row.y : child % 4 == 2 ? row.z : row.w;
                 return __uint_as_float(child < 4 ? word << 16 : word);
             };
-            float first = fmaxf(fmaxf(side(rows[0]) * inverse.x + near.x, side(rows[1]) * inverse.y + near.y),
-                                fmaxf(side(rows[2]) * inverse.z + near.z, start));
-            float last = fminf(fminf(side(rows[3]) * inverse.x + far.x, side(rows[4]) * inverse.y + far.y),
-                               fminf(side(rows[5]) * inverse.z + far.z, end));
-            gaps = gaps << 4 | __float_as_uint(last - first) >> 28;
+            auto bits = [](float x) { return __float_as_int(x); };
+            int first = max(max(bits(side(rows[0]) * inverse.x + near.x), bits(side(rows[1]) * inverse.y + near.y)),
+                            max(bits(side(rows[2]) * inverse.z + near.z), 0));
+            int last = min(min(bits(side(rows[3]) * inverse.x + far.x), bits(side(rows[4]) * inverse.y + far.y)),
+                           min(bits(side(rows[5]) * inverse.z + far.z), bits(end)));
+            float gap = __int_as_float(last) - __int_as_float(first);
+            gaps = gaps << 4 | __float_as_uint(gap) >> 28;
         }
         return ~gaps >> 3 & FIRST_OF_FOUR;
     }
@@ -143,46 +143,66 @@ template <bool ANY>
 __device__ Hit walk(Ray ray, const Node *__restrict__ nodes, const float4 *__restrict__ spheres) {
     Slabs slabs(ray, nodes);
     Line line(ray);
-    Hit hit = {NONE_T, NONE};
-    uint2 stack[MAX_DEPTH];
-    int height = 0;
+    float nearest = ray.t_max;
+    uint32_t hit = 0;
+    uint2 stack[MAX_DEPTH + 1];
+    stack[0] = make_uint2(0, 0);
+    int height = 1;
     uint32_t first = ROOT, group = 0x10000000;
-    for (;;) {
+    do {
         int bit = 31 - __clz(group & FIRST_OF_FOUR);
         group ^= 1u << bit;
         if (group & FIRST_OF_FOUR) stack[height++] = make_uint2(first, group);
         uint32_t before = group & ~FIRST_OF_FOUR & ((1u << (bit ^ slabs.octant)) - 1);
         const Node &node = nodes[first + __popc(before)];
         const uint4 corner = node.corner, links = node.links;
-        uint32_t met = slabs.meets(point(corner), node.sides, ray.t_max * slabs.unit), inner = corner.w;
-        auto index_of = [&](int bit) { return links.y + __popc(links.z & ((1u << bit) - 1)); };
+        float end = nearest * slabs.unit - slabs.start;
+        uint32_t met = slabs.meets(point(corner), node.sides, end), inner = corner.w;
         uint32_t candidates = (met * 15) & links.z;
         met &= inner >> 1;
+        // The index of the lowest bit's sphere, which is taken out if there are others.
+        auto take = [&](uint32_t &bits, int &bit) {
+            bit = __ffs(bits) - 1;
+            uint32_t rest = bits & (bits - 1);
+            if (rest) bits = rest;
+            return links.y + __popc(links.z & ((1u << bit) - 1));
+        };
+        auto ask = [&](uint32_t index, float t) {
+            if (t < nearest || (t == nearest && index < hit)) nearest = t, hit = index;
+        };
         if (ANY) {
             uint32_t leaves = candidates;
             candidates = 0;
-            for (; leaves; leaves &= leaves - 1) {
-                int bit = __ffs(leaves) - 1;
-                candidates |= (uint32_t)line.may_hit(spheres[index_of(bit)]) << bit;
+            while (leaves) {
+                int one, two;
+                uint32_t rest = leaves & (leaves - 1);
+                float4 first = spheres[take(leaves, one)], second = spheres[take(leaves, two)];
+                leaves = rest & (rest - 1);
+                candidates |= (uint32_t)line.may_hit(first) << one | (uint32_t)line.may_hit(second) << two;
             }
-        }
-        for (; candidates; candidates &= candidates - 1) {
-            uint32_t index = index_of(__ffs(candidates) - 1);
-            float t = robust(spheres[index], ray);
-            if (t < ray.t_max) {
-                if (ANY) return {t, index};
-                if (t < hit.t || index < hit.sphere) hit = {t, index};
-                ray.t_max = nextafterf(t, NONE_T);
+            while (candidates && nearest == ray.t_max) {
+                int one;
+                uint32_t rest = candidates & (candidates - 1), index = take(candidates, one);
+                candidates = rest;
+                ask(index, robust(spheres[index], ray));
+            }
+            if (nearest < ray.t_max) met = 0, height = 1;
+        } else {
+            while (candidates) {
+                int one;
+                uint32_t rest = candidates & (candidates - 1), index = take(candidates, one);
+                candidates = rest;
+                ask(index, robust(spheres[index], ray));
             }
         }
         first = links.x;
         group = slabs.in_order(met) | inner;
         if (met == 0) {
-            if (height == 0) return hit;
             uint2 next = stack[--height];
             first = next.x, group = next.y;
         }
-    }
+    } while (group & FIRST_OF_FOUR);
+    return nearest < ray.t_max ? Hit{nearest, hit} : Hit{NONE_T, NONE};
 }
 
 // A colour's room and a depth's, as the renderer writes them; the first two hold the hit.
