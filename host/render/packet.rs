@@ -3,14 +3,16 @@
 //! The rays of a square share their origin. Four planes through the eye and the sides of the square
 //! bound them all, so that boxes are tested once for 64 rays; the eight boxes of a node are tested side by side.
 //! Spheres that are left are tested against 16 rays side by side by [`Shared`], of few operations, and
-//! only what may be a hit is asked about on its rung: on [`Rung::Robust`] 16 rays side by side again, with the
-//! very operations of the kernel, in their order.
+//! only what may be a hit is asked about on its rung: on [`Rung::Robust`] and [`Rung::Double`] 16 rays side by side again, with the
+//! very operations of the kernel, in their order; on [`Rung::Compensated`] and [`Rung::Certified`] about the nearest at the end,
+//! and about what [`bounds`] leave open.
 //!
 //! Loops over arrays become vector instructions; `multiversion` compiles them for several
 //! instruction sets and chooses one when the program runs.
 
 use glam::{DVec3, UVec2, UVec4, Vec3};
 use multiversion::multiversion;
+use spherule_kernel::bounds;
 use spherule_kernel::candidates::Shared;
 use spherule_kernel::precision::intersect;
 use spherule_kernel::tree::{Extent, Node};
@@ -23,6 +25,9 @@ pub const SIDE: usize = 8;
 const RAYS: usize = SIDE * SIDE;
 const GROUPS: usize = RAYS / LANES;
 const WIDTH: usize = Node::WIDTH;
+/// The squares of the directions' lengths for which [`bounds`] hold without scaling, which wants 1/|d| to be 1 at most: that of
+/// a camera's rays is, but for its rounding.
+const SQUARES: std::ops::Range<f32> = 0.999..(1_u64 << 40) as f32;
 /// 16u, u = 2⁻²⁴: what a box test may be off by for its terms, twice over.
 const SLACK: f32 = 16.0 / (1 << 24) as f32;
 
@@ -45,6 +50,12 @@ pub struct Packet {
     /// The nearest hit so far, or the end of the ray; and its sphere.
     t: [Lanes; GROUPS],
     sphere: [[u32; LANES]; GROUPS],
+    /// Where a sphere must certainly be hit before to be nearer; and 1 where the rung was not asked about the
+    /// nearest, so that `t` is where it is hit at most.
+    low: [Lanes; GROUPS],
+    is_unasked: [[u32; LANES]; GROUPS],
+    /// Whether directions are of such length that [`bounds`] hold for them as they are.
+    has_bounds: bool,
     /// The largest t of each group.
     end: [f32; GROUPS],
     /// How far a hit of the rung may be from its sphere.
@@ -90,6 +101,9 @@ impl Packet {
             inverse: none,
             t: none,
             sphere: [[Hit::NONE_SPHERE; LANES]; GROUPS],
+            low: none,
+            is_unasked: [[0; LANES]; GROUPS],
+            has_bounds: false,
             end: [0.0; GROUPS],
             widening: 0.0,
             frustum: Frustum {
@@ -113,7 +127,10 @@ impl Packet {
         (self.origin, self.t_min) = (first.origin, first.t_min);
         self.t = [Lanes([first.t_max; LANES]); GROUPS];
         self.sphere = [[Hit::NONE_SPHERE; LANES]; GROUPS];
+        self.low = self.t;
+        self.is_unasked = [[0; LANES]; GROUPS];
         self.end = [first.t_max; GROUPS];
+        self.has_bounds = true;
         let columns: [f32; SIDE] = std::array::from_fn(|x| film(x as u32, 0).x);
         let rows: [f32; SIDE] = std::array::from_fn(|y| film(0, y as u32).y);
         let (forward, right, up) = (camera.forward, camera.right, camera.up);
@@ -130,6 +147,7 @@ impl Packet {
             self.inverse[group] = Lanes(lanes(|i| 1.0 / a[i]));
             (self.x[group], self.y[group], self.z[group]) = (Lanes(x), Lanes(y), Lanes(z));
             self.a[group] = Lanes(a);
+            self.has_bounds &= a.iter().all(|a| SQUARES.contains(a));
         }
         let side = SIDE as u32 - 1;
         let corners = [(0, 0), (side, 0), (side, side), (0, side)]
@@ -155,12 +173,7 @@ impl Packet {
     #[must_use]
     pub fn hit(&self, index: usize) -> (Ray, Hit) {
         let (group, lane) = place(index);
-        let direction = Vec3::new(
-            self.x[group].0[lane],
-            self.y[group].0[lane],
-            self.z[group].0[lane],
-        );
-        let ray = Ray::within(self.origin, direction, self.t_min, Hit::NONE_T);
+        let ray = self.ray(group, lane, Hit::NONE_T);
         let sphere = self.sphere[group][lane];
         let t = if sphere == Hit::NONE_SPHERE {
             Hit::NONE_T
@@ -176,10 +189,10 @@ impl Packet {
         self.end.iter().copied().fold(f32::MIN, f32::max)
     }
 
-    /// Tests spheres, the first of which has the index `first`.
+    /// Tests `count` of the spheres from `first` on.
     #[inline(always)]
-    fn test<const RUNG: u32>(&mut self, spheres: &[Sphere], first: u32) {
-        for (index, sphere) in spheres.iter().enumerate() {
+    fn test<const RUNG: u32>(&mut self, spheres: &[Sphere], first: u32, count: usize) {
+        for (index, sphere) in spheres[first as usize..][..count].iter().enumerate() {
             let shared = Shared::of(*sphere, self.origin).to_vec4();
             let o = shared.truncate();
             let radius = sphere.radius().abs();
@@ -207,43 +220,126 @@ impl Packet {
                         self.test_robust(group, *sphere, index);
                     } else if RUNG == Rung::Double.to_u32() {
                         self.test_double(group, *sphere, index);
+                    } else if RUNG != Rung::Textbook.to_u32() && self.has_bounds {
+                        let open = self.test_bounds(group, *sphere, index);
+                        if open != [0; LANES] {
+                            self.ask::<RUNG>(group, &open, spheres);
+                            self.test_each::<RUNG>(group, *sphere, index, &open);
+                        }
                     } else {
-                        self.test_each::<RUNG>(group, *sphere, index, &discriminant);
+                        let open = lanes(|i| 1 - u32::from(discriminant.0[i] < 0.0));
+                        self.test_each::<RUNG>(group, *sphere, index, &open);
                     }
                 }
             }
         }
     }
 
-    /// Asks the rung about each ray that may meet the sphere.
+    /// Takes the sphere where it is the nearest for certain, and tells (1, else 0) for which rays the rung is to be asked:
+    /// [`bounds`] for 16 rays.
+    #[inline(always)]
+    fn test_bounds(&mut self, group: usize, sphere: Sphere, index: u32) -> [u32; LANES] {
+        let o = sphere.center() - self.origin;
+        let r = sphere.radius().abs();
+        let (oo, rr) = (o.dot(o), r * r);
+        let doubt = bounds::doubt(oo, rr);
+        let may_be_behind = (self.t_min >= 0.0) & (oo * bounds::OUTSIDE > rr);
+        let (x, y, z) = (&self.x[group].0, &self.y[group].0, &self.z[group].0);
+        let inverse = &self.inverse[group].0;
+        let b = lanes(|i| o.x * x[i] + o.y * y[i] + o.z * z[i]);
+        let middle = lanes(|i| b[i] * inverse[i]);
+        let foot_x = lanes(|i| o.x - x[i] * middle[i]);
+        let foot_y = lanes(|i| o.y - y[i] * middle[i]);
+        let foot_z = lanes(|i| o.z - z[i] * middle[i]);
+        let q =
+            lanes(|i| rr - (foot_x[i] * foot_x[i] + foot_y[i] * foot_y[i] + foot_z[i] * foot_z[i]));
+        let positive = lanes(|i| if q[i] > 0.0 { q[i] * inverse[i] } else { 0.0 });
+        let root = lanes(|i| positive[i].sqrt());
+        let off = lanes(|i| middle[i].abs() * bounds::OFF + r * bounds::OFF_BY_RADIUS);
+        let low = lanes(|i| middle[i] - root[i] - off[i]);
+        let high = lanes(|i| middle[i] - root[i] + off[i]);
+        let t_min = self.t_min;
+        let (end, nearest) = (self.t[group].0, self.low[group].0);
+        let (spheres, is_unasked) = (self.sphere[group], self.is_unasked[group]);
+        let misses = |i: usize| (q[i] < -doubt) | (may_be_behind & (b[i] < 0.0));
+        let hits = |i: usize| (q[i] > doubt) & (low[i] >= t_min);
+        let is_nearer = lanes(|i| u32::from(hits(i) & (high[i] < nearest[i])));
+        let is_closed = |i: usize| misses(i) | (hits(i) & (low[i] > end[i]));
+        let open = lanes(|i| u32::from(!is_closed(i)) & !is_nearer[i]);
+        let ends = lanes(|i| if is_nearer[i] == 1 { high[i] } else { end[i] });
+        self.low[group] = Lanes(lanes(|i| {
+            if is_nearer[i] == 1 {
+                low[i]
+            } else {
+                nearest[i]
+            }
+        }));
+        self.sphere[group] = lanes(|i| if is_nearer[i] == 1 { index } else { spheres[i] });
+        self.is_unasked[group] = lanes(|i| is_unasked[i] | is_nearer[i]);
+        self.t[group] = Lanes(ends);
+        self.end[group] = largest(&ends);
+        open
+    }
+
+    /// Asks the rung about the nearest spheres of these rays (1 each, else 0), where it was not.
+    #[inline(always)]
+    fn ask<const RUNG: u32>(&mut self, group: usize, rays: &[u32; LANES], spheres: &[Sphere]) {
+        for (lane, is_asked) in rays.iter().enumerate() {
+            if is_asked & self.is_unasked[group][lane] == 1 {
+                self.is_unasked[group][lane] = 0;
+                let sphere = spheres[self.sphere[group][lane] as usize];
+                let t = intersect(RUNG, sphere, &self.ray(group, lane, Hit::NONE_T));
+                self.t[group].0[lane] = t;
+                self.low[group].0[lane] = t;
+            }
+        }
+    }
+
+    /// Asks the rung about what it was not.
+    #[inline(always)]
+    fn finish<const RUNG: u32>(&mut self, spheres: &[Sphere]) {
+        if self.is_unasked != [[0; LANES]; GROUPS] {
+            for group in 0..GROUPS {
+                self.ask::<RUNG>(group, &[1; LANES], spheres);
+            }
+        }
+    }
+
+    /// A ray up to `t_max`.
+    #[inline(always)]
+    fn ray(&self, group: usize, lane: usize, t_max: f32) -> Ray {
+        let direction = Vec3::new(
+            self.x[group].0[lane],
+            self.y[group].0[lane],
+            self.z[group].0[lane],
+        );
+        Ray::within(self.origin, direction, self.t_min, t_max)
+    }
+
+    /// Asks the rung about each of these rays (1, else 0) whether it meets the sphere.
     #[inline(always)]
     fn test_each<const RUNG: u32>(
         &mut self,
         group: usize,
         sphere: Sphere,
         index: u32,
-        discriminant: &Lanes,
+        rays: &[u32; LANES],
     ) {
-        for lane in 0..LANES {
-            if discriminant.0[lane] < 0.0 {
+        for (lane, is_asked) in rays.iter().enumerate() {
+            if *is_asked == 0 {
                 continue;
             }
             let best = self.t[group].0[lane];
-            let direction = Vec3::new(
-                self.x[group].0[lane],
-                self.y[group].0[lane],
-                self.z[group].0[lane],
-            );
             // As near is of interest, too, if the index is lower.
             let t_max = if best < Hit::NONE_T {
                 best.next_up()
             } else {
                 best
             };
-            let ray = Ray::within(self.origin, direction, self.t_min, t_max);
-            let t = intersect(RUNG, sphere, &ray);
+            let t = intersect(RUNG, sphere, &self.ray(group, lane, t_max));
             if t < t_max && (t < best || index < self.sphere[group][lane]) {
                 self.t[group].0[lane] = t;
+                self.low[group].0[lane] = t;
                 self.sphere[group][lane] = index;
             }
         }
@@ -453,7 +549,8 @@ fn trace_on<const RUNG: u32>(packet: &mut Packet, nodes: &[Node], spheres: &[Sph
     if nodes.is_empty() {
         // Of hits of a rung without a bound nothing is known; none is passed by for being far away.
         packet.widening = f32::MAX;
-        packet.test::<RUNG>(spheres, 0);
+        packet.test::<RUNG>(spheres, 0, spheres.len());
+        packet.finish::<RUNG>(spheres);
         return;
     }
     let widening = Extent::of_node(&nodes[0]).widening(RUNG, packet.origin);
@@ -473,8 +570,7 @@ fn trace_on<const RUNG: u32>(packet: &mut Packet, nodes: &[Node], spheres: &[Sph
         }
         let first = entry.first as usize;
         if entry.count > 0 {
-            let spheres = &spheres[first..first + entry.count as usize];
-            packet.test::<RUNG>(spheres, entry.first);
+            packet.test::<RUNG>(spheres, entry.first, entry.count as usize);
             continue;
         }
         let node = &nodes[first];
@@ -504,6 +600,7 @@ fn trace_on<const RUNG: u32>(packet: &mut Packet, nodes: &[Node], spheres: &[Sph
             height += 1;
         }
     }
+    packet.finish::<RUNG>(spheres);
 }
 
 /// A row of a node's sides.

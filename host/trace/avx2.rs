@@ -70,7 +70,7 @@ fn trace_one_inner<const ANY: bool, S: Spheres + ?Sized>(
     let mut stack = Stack::new();
     let mut walk = Walk::of(avx2, single, ray);
     while walk.step::<ANY, S>(single.nodes, spheres, &mut stack) {}
-    walk.search.hit
+    walk.search.finish::<ANY>()
 }
 
 #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
@@ -103,7 +103,7 @@ fn trace_inner<const ANY: bool, S: Spheres + ?Sized>(
                 place += 1;
                 continue;
             }
-            put(indices[place], walk.search.hit);
+            put(indices[place], walk.search.finish::<ANY>());
             if let Some((of, ray)) = rest.next() {
                 *walk = Walk::of(avx2, single, ray);
                 indices[place] = of;

@@ -2,7 +2,8 @@
 //!
 //! Four spheres at a time are sifted by the discriminant of
 //! [`candidates`](spherule_kernel::candidates), whose slack covers every rung, and only what may be a hit is
-//! asked about on its rung. With AVX2, which is looked for when the program runs, the eight boxes of a node
+//! asked about on its rung; of the rungs that take long, only the nearest at the end, and what
+//! [`bounds`](spherule_kernel::bounds) leave open. With AVX2, which is looked for when the program runs, the eight boxes of a node
 //! are tested side by side, too; without it the kernel's walk does that.
 
 use glam::{Mat4, Vec4};
@@ -80,9 +81,9 @@ impl<'a> Single<'a> {
 
     fn trace_one<const ANY: bool, S: Spheres + ?Sized>(&self, ray: &Ray, spheres: &S) -> Hit {
         if !self.has_tree() {
-            let mut search = Search::of(self.intersect, ray);
+            let mut search = self.search(ray);
             search.test::<ANY, S>(spheres, 0, spheres.count());
-            return search.hit;
+            return search.finish::<ANY>();
         }
         #[cfg(target_arch = "x86_64")]
         if let Some(avx2) = self.avx2 {
@@ -103,7 +104,7 @@ impl<'a> Single<'a> {
     /// A ray that has not met anything yet.
     #[inline(always)]
     pub(super) fn search(&self, ray: &Ray) -> Search {
-        Search::of(self.intersect, ray)
+        Search::of(self.rung, self.intersect, ray)
     }
 }
 
@@ -123,25 +124,79 @@ impl Traversal for Single<'_> {
 #[derive(Clone, Copy)]
 pub(super) struct Search {
     intersect: fn(Sphere, &Ray) -> f32,
+    /// Whether the rung takes so long that it is asked at the end, as in the kernel's walk.
+    is_lazy: bool,
     /// Ends where a sphere could still be of interest.
     pub(super) ray: Ray,
     line: Line,
-    /// What was found.
+    /// What was found. While there is an `unasked` sphere, `t` is where it is hit at most.
     pub(super) hit: Hit,
+    /// The sphere that was found, if the rung was not asked about it.
+    unasked: Option<Sphere>,
+    /// Where a sphere must certainly be hit before to be nearer, as the line counts it.
+    low: f32,
 }
 
 impl Search {
     #[inline(always)]
-    fn of(intersect: fn(Sphere, &Ray) -> f32, ray: &Ray) -> Self {
+    fn of(rung: Rung, intersect: fn(Sphere, &Ray) -> f32, ray: &Ray) -> Self {
+        let line = Line::of(ray);
         Self {
             intersect,
+            is_lazy: rung >= Rung::Compensated,
             ray: Ray {
                 t_max: ray.end(),
                 ..*ray
             },
-            line: Line::of(ray),
+            line,
             hit: Hit::NONE,
+            unasked: None,
+            low: ray.end() * line.unit,
         }
+    }
+
+    /// What was found; with `ANY` only whether anything was.
+    #[inline(always)]
+    pub(super) fn finish<const ANY: bool>(mut self) -> Hit {
+        if !ANY {
+            self.ask_at_last();
+        }
+        self.hit
+    }
+
+    /// Asks about the sphere that was found without.
+    #[inline(always)]
+    fn ask_at_last(&mut self) {
+        if let Some(sphere) = self.unasked.take() {
+            self.found_at((self.intersect)(sphere, &self.ray), self.hit.sphere);
+        }
+    }
+
+    /// Takes the rung's answer about the sphere that is nearest.
+    #[inline(always)]
+    fn found_at(&mut self, t: f32, sphere: u32) {
+        self.hit = Hit { t, sphere };
+        self.low = t * self.line.unit;
+        // One as near is still of interest, if its index is lower.
+        self.ray.t_max = t.next_up();
+    }
+
+    /// Whether it is certain what a sphere is to the ray; it is taken if it is the nearest.
+    #[inline(always)]
+    fn is_certain(&mut self, sphere: Sphere, index: u32) -> bool {
+        let bounds = self.line.bounds(sphere);
+        if bounds.hits & (bounds.high < self.low) {
+            self.low = bounds.low;
+            self.unasked = Some(sphere);
+            // A quotient by a power of two.
+            self.ray.t_max = bounds.high / self.line.unit;
+            self.hit = Hit {
+                t: self.ray.t_max,
+                sphere: index,
+            };
+            return true;
+        }
+        !bounds.is_open(self.ray.t_max * self.line.unit)
     }
 
     /// Tests `count` spheres from `first` on; those that there are not are left out.
@@ -169,18 +224,24 @@ impl Search {
             while found != 0 {
                 let lane = found.trailing_zeros();
                 found &= found - 1;
-                let t = (self.intersect)(four[lane as usize], &self.ray);
+                let (sphere, index) = (four[lane as usize], at + lane);
+                if self.is_lazy {
+                    if self.is_certain(sphere, index) {
+                        if ANY & self.hit.is_some() {
+                            return;
+                        }
+                        continue;
+                    }
+                    self.ask_at_last();
+                }
+                let t = (self.intersect)(sphere, &self.ray);
                 if t < self.ray.t_max {
-                    let sphere = at + lane;
+                    if (t < self.hit.t) | (index < self.hit.sphere) {
+                        self.found_at(t, index);
+                    }
                     if ANY {
-                        self.hit = Hit { t, sphere };
                         return;
                     }
-                    if (t < self.hit.t) | (sphere < self.hit.sphere) {
-                        self.hit = Hit { t, sphere };
-                    }
-                    // One as near is still of interest, if its index is lower.
-                    self.ray.t_max = t.next_up();
                 }
             }
             at += LANES as u32;

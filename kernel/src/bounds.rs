@@ -34,6 +34,20 @@ use crate::candidates::{SLACK, power_of_two_under};
 use crate::ray::Ray;
 use crate::sphere::Sphere;
 
+/// What is added to and taken from m − √(q/a), in parts of m: 512u.
+pub const OFF: f32 = 1.0 / (1 << 15) as f32;
+/// The same, in parts of r: 1024u.
+pub const OFF_BY_RADIUS: f32 = 1.0 / (1 << 14) as f32;
+/// An origin is outside for certain where o·o, times this, is more than r²: 1 − 64u.
+pub const OUTSIDE: f32 = 1.0 - 1.0 / (1 << 18) as f32;
+
+/// The doubt e about q, of o·o and r²; and what squares must be above for their errors to be relative.
+#[inline]
+#[must_use]
+pub fn doubt(oo: f32, rr: f32) -> f32 {
+    oo * (1.0 / (1 << 28) as f32) + (rr * (1.0 / (1 << 6) as f32) + 1e-30)
+}
+
 /// A ray, for one sphere after the other.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Line {
@@ -120,16 +134,6 @@ impl Line {
     #[inline]
     #[must_use]
     pub fn bounds(&self, sphere: Sphere) -> Bounds {
-        const TWO_TO_MINUS_6: f32 = 1.0 / (1 << 6) as f32;
-        const TWO_TO_MINUS_28: f32 = 1.0 / (1 << 28) as f32;
-        /// 512u, and twice that.
-        const OFF: f32 = 1.0 / (1 << 15) as f32;
-        const OFF_BY_RADIUS: f32 = 1.0 / (1 << 14) as f32;
-        /// 1 − 64u.
-        const OUTSIDE: f32 = 1.0 - 1.0 / (1 << 18) as f32;
-        /// What squares must be above for their errors to be relative.
-        const SMALLEST: f32 = 1e-30;
-
         let o = sphere.center() - self.origin;
         let r = sphere.radius().abs();
         let (oo, rr) = (o.dot(o), r * r);
@@ -137,7 +141,7 @@ impl Line {
         let middle = b * self.inverse;
         let foot = o - self.direction * middle;
         let q = rr - foot.dot(foot);
-        let doubt = oo * TWO_TO_MINUS_28 + (rr * TWO_TO_MINUS_6 + SMALLEST);
+        let doubt = doubt(oo, rr);
         let enters = middle - (q * self.inverse).sqrt();
         let off = middle.abs() * OFF + r * OFF_BY_RADIUS;
         let (low, high) = (enters - off, enters + off);

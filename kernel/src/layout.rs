@@ -113,9 +113,9 @@ layouts! {
     "Accumulator.color_alpha" = offset_of!(Accumulator, color_alpha);
     "Accumulator.statistics" = offset_of!(Accumulator, statistics);
     "size of Node" = size_of::<Node>();
+    "Node.sides" = offset_of!(Node, sides);
     "Node.corner" = offset_of!(Node, corner);
     "Node.links" = offset_of!(Node, links);
-    "Node.sides" = offset_of!(Node, sides);
     "size of Operands" = size_of::<Operands>();
     "Operands.a" = offset_of!(Operands, a);
     "Operands.b" = offset_of!(Operands, b);
