@@ -698,3 +698,87 @@ impl Boxes {
         sums
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use spherule_kernel::nearest::nearest_hit_in;
+
+    use super::*;
+    use crate::accuracy::random::Random;
+    use crate::scene::tree::grow_still;
+
+    const SIZE: UVec2 = UVec2::new(45, 29);
+
+    fn launch(eye: Vec3, target: Vec3) -> Launch {
+        let aspect = f64::from(SIZE.x) / f64::from(SIZE.y);
+        let camera = Camera::look_at(eye, target, Vec3::Y, 0.9, aspect);
+        Launch {
+            camera: camera.expect("a camera"),
+            image_size: SIZE,
+            tile_size: SIZE,
+            first_of_tile: 1,
+            sphere_count: u32::MAX,
+            ..Launch::default()
+        }
+    }
+
+    /// Squares of rays find what each finds alone, with a tree and without.
+    fn finds_what_each_ray_finds<const RUNG: u32>(launch: &Launch, spheres: &[Sphere]) -> usize {
+        let tree = grow_still(spheres, 1).expect("a tree");
+        let sorted = tree.sort(spheres);
+        let mut hits = 0;
+        let mut packet = Packet::new();
+        for (nodes, spheres) in [(&tree.nodes[..], &sorted[..]), (&[], spheres)] {
+            for (left, top) in (0..SIZE.y)
+                .step_by(SIDE)
+                .flat_map(|top| (0..SIZE.x).step_by(SIDE).map(move |left| (left, top)))
+            {
+                trace::<RUNG>(&mut packet, launch, UVec2::new(left, top), nodes, spheres);
+                for index in 0..RAYS {
+                    let (ray, hit) = packet.hit(index);
+                    let alone = nearest_hit_in(RUNG, &ray, spheres, 0, u32::MAX);
+                    assert_eq!(hit, alone, "rung {RUNG}, {} nodes, {ray:?}", nodes.len());
+                    hits += usize::from(hit.is_some());
+                }
+            }
+        }
+        hits
+    }
+
+    #[test]
+    fn squares_find_what_each_ray_finds() {
+        let mut random = Random::new(29);
+        let mut world = |of: &mut dyn FnMut(&mut Random) -> Sphere| -> Vec<Sphere> {
+            (0..600).map(|_| of(&mut random)).collect()
+        };
+        let worlds = [
+            world(&mut |r| Sphere::new(r.vec3(-4.0, 4.0), 0.3)),
+            world(&mut |r| Sphere::new(r.vec3(-2.0, 2.0).round(), 0.5)),
+            world(&mut |r| {
+                let radius = r.log_within(1e-3, 1e3);
+                Sphere::new(r.unit_vec3() * (radius + r.within(0.0, 5.0)), radius)
+            }),
+            world(&mut |r| Sphere::new(Vec3::ONE, r.log_within(0.1, 20.0))),
+            world(&mut |r| Sphere::new(Vec3::new(0.0, 0.0, -3e3) + r.vec3(-900.0, 900.0), 40.0)),
+        ];
+        for spheres in &worlds {
+            for (eye, target) in [
+                (Vec3::new(0.0, 0.5, 9.0), Vec3::ZERO),
+                (Vec3::new(0.3, 0.1, 0.2), Vec3::NEG_Z),
+            ] {
+                let launch = launch(eye, target);
+                let hits =
+                    finds_what_each_ray_finds::<{ Rung::Textbook.to_u32() }>(&launch, spheres)
+                        + finds_what_each_ray_finds::<{ Rung::Robust.to_u32() }>(&launch, spheres)
+                        + finds_what_each_ray_finds::<{ Rung::Compensated.to_u32() }>(
+                            &launch, spheres,
+                        )
+                        + finds_what_each_ray_finds::<{ Rung::Double.to_u32() }>(&launch, spheres)
+                        + finds_what_each_ray_finds::<{ Rung::Certified.to_u32() }>(
+                            &launch, spheres,
+                        );
+                assert!(hits > 1000, "{hits} hits tell little");
+            }
+        }
+    }
+}
