@@ -271,13 +271,14 @@ fn splitting_changes_nothing() {
         };
         let (expected, _) =
             render::gpu::render(&whole, &launch, &prepare(&whole), QUIET).expect("whole");
-        for (gpu, pace) in [
-            (&split, Pace::default()),
+        for (gpu, mut pace) in [
+            (&split, Pace::first_on(&split)),
             (&whole, Pace::starting_at(97 * 20)),
             (&whole, Pace::starting_at(50)),
         ] {
             let (pixels, _) =
-                render::gpu::render_paced(gpu, &launch, &prepare(gpu), QUIET, pace).expect("split");
+                render::gpu::render_paced(gpu, &launch, &prepare(gpu), QUIET, &mut pace)
+                    .expect("split");
             assert!(pixels == expected, "{pace:?}");
         }
     }

@@ -260,28 +260,24 @@ fn on_gpu(
             tracer.heat(&batches[Kind::Ambient as usize - 1])?;
         }
     }
-    for round in 0..=plan.rounds {
+    let launch_once = |kind: Kind| match kind {
+        Kind::Primary => render::gpu::time(gpu, &launch, &world),
+        Kind::Shadow | Kind::Ambient => tracer.occluded(plan.rung, &batches[kind as usize - 1]),
+        Kind::Incoherent => tracer.nearest(plan.rung, &batches[kind as usize - 1]),
+    };
+    for _ in 0..plan.rounds {
         for kind in Kind::ALL {
-            let index = kind as usize;
             if sets.kind(kind).is_empty() {
                 continue;
             }
             tracer.heat(&batches[Kind::Ambient as usize - 1])?;
-            let took = if kind == Kind::Primary {
-                let (pixels, timings) = render::gpu::render(gpu, &launch, &world, QUIET)?;
-                found[index] = pixels.iter().filter(|pixel| pixel.is_hit()).count();
-                timings.trace
-            } else if kind.is_any() {
-                tracer.occluded(plan.rung, &batches[index - 1])?
-            } else {
-                tracer.nearest(plan.rung, &batches[index - 1])?
-            };
-            // The first round warms up.
-            if round > 0 {
-                times[index].push(took.as_secs_f64());
-            }
+            // What was just done is still in the caches, as it is where image follows upon image.
+            launch_once(kind)?;
+            times[kind as usize].push(launch_once(kind)?.as_secs_f64());
         }
     }
+    let (pixels, _) = render::gpu::render(gpu, &launch, &world, QUIET)?;
+    found[Kind::Primary as usize] = pixels.iter().filter(|pixel| pixel.is_hit()).count();
     for kind in [Kind::Shadow, Kind::Ambient] {
         let index = kind as usize;
         let occluded = tracer.occlusions(&batches[index - 1])?;

@@ -1,6 +1,7 @@
 //! The GPU path: the `render` entry point, tile by tile and run by run.
 
 use std::ops::Range;
+use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use glam::UVec2;
@@ -36,6 +37,8 @@ pub struct Prepared {
     by_tiles: bool,
     /// What a pixel takes, in intersections.
     work: u64,
+    /// What was learned of this kernel so far.
+    pace: Mutex<Pace>,
 }
 
 #[derive(Debug)]
@@ -108,7 +111,19 @@ impl Prepared {
                 Some(_) => WORK_IN_TREE,
                 None => count as u64,
             },
+            pace: Mutex::new(Pace::first_on(gpu)),
         })
+    }
+}
+
+impl Prepared {
+    /// Starts from what was learned, and keeps what is.
+    fn paced<T>(&self, render: impl FnOnce(&mut Pace) -> T) -> T {
+        let learned = || self.pace.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut pace = *learned();
+        let result = render(&mut pace);
+        *learned() = pace;
+        result
     }
 }
 
@@ -123,10 +138,10 @@ pub fn render(
     world: &Prepared,
     progress: Progress<'_>,
 ) -> Result<(Vec<Pixel>, Timings)> {
-    render_paced(gpu, launch, world, progress, Pace::default())
+    world.paced(|pace| render_paced(gpu, launch, world, progress, pace))
 }
 
-/// [`render`] with the first launches sized by `pace`.
+/// [`render`] with launches sized by `pace`.
 ///
 /// # Errors
 ///
@@ -136,8 +151,48 @@ pub fn render_paced(
     launch: &Launch,
     world: &Prepared,
     progress: Progress<'_>,
-    mut pace: Pace,
+    pace: &mut Pace,
 ) -> Result<(Vec<Pixel>, Timings)> {
+    let size = launch.image_size;
+    let mut image = film::allocate(size.x, size.y)?;
+    let mut readback = Duration::ZERO;
+    let timings = each_tile(gpu, launch, world, pace, |target, start, count| {
+        let reading = Instant::now();
+        let pixels = gpu.read_first(target, count)?;
+        check_written(gpu, &pixels)?;
+        image[start..start + count].copy_from_slice(&pixels);
+        readback += reading.elapsed();
+        progress((start + count) as f64 / image.len() as f64);
+        Ok(())
+    })?;
+    Ok((
+        image,
+        Timings {
+            readback,
+            ..timings
+        },
+    ))
+}
+
+/// What [`render`] takes on the device, by its clock if it has one; the image stays there.
+///
+/// # Errors
+///
+/// As [`render`].
+pub fn time(gpu: &Gpu, launch: &Launch, world: &Prepared) -> Result<Duration> {
+    let all = world.paced(|pace| each_tile(gpu, launch, world, pace, |_, _, _| Ok(())))?;
+    Ok(all.trace)
+}
+
+/// Renders a launch tile by tile. `finished` is told where a tile's pixels are, which of the image its
+/// first is, and how many there are.
+fn each_tile(
+    gpu: &Gpu,
+    launch: &Launch,
+    world: &Prepared,
+    pace: &mut Pace,
+    mut finished: impl FnMut(&Buffer<Pixel>, usize, usize) -> Result<()>,
+) -> Result<Timings> {
     let started = Instant::now();
     let size = launch.image_size;
     let tiles = Tiles::new::<Pixel>(gpu, size);
@@ -149,29 +204,20 @@ pub fn render_paced(
         setup: started.elapsed(),
         ..Timings::default()
     };
-
-    let mut image = film::allocate(size.x, size.y)?;
     let mut origin = UVec2::ZERO;
     while origin.y < size.y {
-        let tile = tiles.at(origin, &pace, world.work);
+        let tile = tiles.at(origin, pace, world.work);
         let launch = Launch {
             tile_origin: origin,
             tile_size: tile,
             ..*launch
         };
-        timings.trace += render_tile(gpu, &launch, world, &target, &mut pace)?;
-
-        let reading = Instant::now();
-        let pixels = gpu.read_first(&target.pixels, (tile.x * tile.y) as usize)?;
-        check_written(gpu, &pixels)?;
-        let start = tiles.start(origin);
-        image[start..start + pixels.len()].copy_from_slice(&pixels);
-        timings.readback += reading.elapsed();
-
+        timings.trace += render_tile(gpu, &launch, world, &target, pace)?;
+        let count = tile.x as usize * tile.y as usize;
+        finished(&target.pixels, tiles.start(origin), count)?;
         origin = tiles.next(origin, tile);
-        progress(f64::from(origin.y) / f64::from(size.y));
     }
-    Ok((image, timings))
+    Ok(timings)
 }
 
 /// What the launches write to, and what they are told.

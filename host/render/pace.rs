@@ -8,11 +8,15 @@ use std::time::Duration;
 
 use glam::UVec2;
 
+use crate::device::Gpu;
+
 /// What one launch should take.
 const TARGET: Duration = Duration::from_millis(200);
-/// The first launch's work, in intersections: a second on the slowest software adapter seen, a
-/// quarter of a millisecond on a fast GPU.
-const FIRST: u64 = 1 << 27;
+/// The first launch's work on a software adapter, in intersections: a second on the slowest one seen.
+const FIRST_IN_SOFTWARE: u64 = 1 << 27;
+/// The first launch's work on a GPU: a quarter of a millisecond on a fast one, a tenth of a second on a slow one.
+/// Small launches cost: each waits for the last of its threads.
+const FIRST_ON_GPU: u64 = 1 << 30;
 /// No tile is smaller than this, however many spheres there are: fewer threads leave a GPU idle,
 /// and then a launch takes as long however little it does. The spheres are split instead.
 const MIN_TILE_PIXELS: u64 = 1 << 16;
@@ -25,15 +29,17 @@ pub struct Pace {
     intersections: u64,
 }
 
-impl Default for Pace {
-    fn default() -> Self {
-        Self {
-            intersections: FIRST,
-        }
-    }
-}
-
 impl Pace {
+    /// What `gpu` starts at, before anything is known of a kernel on it.
+    #[must_use]
+    pub fn first_on(gpu: &Gpu) -> Self {
+        Self::starting_at(if gpu.is_software() {
+            FIRST_IN_SOFTWARE
+        } else {
+            FIRST_ON_GPU
+        })
+    }
+
     /// A pace at which every launch does about this many intersections at first.
     #[must_use]
     pub fn starting_at(intersections: u64) -> Self {
@@ -116,7 +122,7 @@ mod tests {
 
     #[test]
     fn tiles_keep_a_gpu_busy_however_many_spheres_there_are() {
-        let mut pace = Pace::default();
+        let mut pace = Pace::starting_at(1 << 27);
         pace.learn(1 << 20, Duration::from_secs(100));
         let tile = pace.tile(1920, UVec2::new(1920, 1080), 1 << 23, 1 << 32);
         assert!(u64::from(tile.x) * u64::from(tile.y) > MIN_TILE_PIXELS - 1920);
@@ -126,7 +132,7 @@ mod tests {
     #[test]
     fn the_pace_settles_at_the_target() {
         for intersections_per_second in [3e8, 2e12] {
-            let mut pace = Pace::default();
+            let mut pace = Pace::starting_at(1 << 27);
             let mut took = Duration::ZERO;
             for _ in 0..12 {
                 let work = pace.intersections;

@@ -88,7 +88,7 @@ pub fn render(
     while origin.y < size.y {
         // Noise is that of the whole image, as far as one readback reaches.
         let work = if settings.noise.is_some() { 1 } else { work };
-        let tile = tiles.at(origin, &Pace::default(), work);
+        let tile = tiles.at(origin, &Pace::first_on(gpu), work);
         let count = (tile.x * tile.y) as usize;
         let start = tiles.start(origin);
         // What is left of the time is shared out evenly over what is left of the image.
