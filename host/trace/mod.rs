@@ -8,9 +8,13 @@
 
 #[cfg(target_arch = "x86_64")]
 mod avx2;
+#[cfg(target_arch = "x86_64")]
+mod avx512;
 pub mod cpu;
 pub mod gpu;
 pub mod single;
+#[cfg(target_arch = "x86_64")]
+mod walk;
 
 pub use cpu::CpuTracer;
 pub use gpu::GpuTracer;

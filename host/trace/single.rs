@@ -13,10 +13,12 @@ use spherule_kernel::nearest::{MovingSpheres, Spheres};
 use spherule_kernel::precision::intersect;
 use spherule_kernel::traversal::Traversal;
 use spherule_kernel::tree::{Node, is_occluded_in_tree, nearest_hit_in_tree};
-use spherule_kernel::{Hit, Ray, Rung, Sphere};
+use spherule_kernel::{Effects, Hit, Ray, Rung, Sphere};
 
 #[cfg(target_arch = "x86_64")]
-use super::avx2::{self, Avx2};
+use super::avx512::{self, Avx512};
+#[cfg(target_arch = "x86_64")]
+use super::walk::{self, Features};
 
 /// Spheres side by side.
 const LANES: usize = 4;
@@ -32,7 +34,7 @@ pub struct Single<'a> {
     pub(super) nodes: &'a [Node],
     /// That the machine has it.
     #[cfg(target_arch = "x86_64")]
-    avx2: Option<Avx2>,
+    features: Option<Features>,
 }
 
 impl<'a> Single<'a> {
@@ -53,21 +55,21 @@ impl<'a> Single<'a> {
             },
             nodes,
             #[cfg(target_arch = "x86_64")]
-            avx2: Avx2::detect(),
+            features: Features::detect(),
         }
     }
 
     /// What each ray hits: the nearest, or with `ANY` the first that is found. `put` is told the ray's
     /// index, not in order.
-    pub fn trace<const ANY: bool, S: Spheres + ?Sized>(
+    pub fn trace<const ANY: bool, S: Resting + ?Sized>(
         &self,
         rays: &[Ray],
         spheres: &S,
         mut put: impl FnMut(usize, Hit),
     ) {
         #[cfg(target_arch = "x86_64")]
-        if let (Some(avx2), true) = (self.avx2, self.has_tree()) {
-            avx2::trace::<ANY, S>(avx2, self, rays, spheres, put);
+        if let (Some(features), true) = (self.features, self.has_tree()) {
+            walk::trace::<ANY, S>(features, self, rays, spheres, put);
             return;
         }
         for (index, ray) in rays.iter().enumerate() {
@@ -79,15 +81,15 @@ impl<'a> Single<'a> {
         self.nodes.len() > Node::ROOT as usize
     }
 
-    fn trace_one<const ANY: bool, S: Spheres + ?Sized>(&self, ray: &Ray, spheres: &S) -> Hit {
+    fn trace_one<const ANY: bool, S: Resting + ?Sized>(&self, ray: &Ray, spheres: &S) -> Hit {
         if !self.has_tree() {
             let mut search = self.search(ray);
             search.test::<ANY, S>(spheres, 0, spheres.count());
             return search.finish::<ANY>();
         }
         #[cfg(target_arch = "x86_64")]
-        if let Some(avx2) = self.avx2 {
-            return avx2::trace_one::<ANY, S>(avx2, self, ray, spheres);
+        if let Some(features) = self.features {
+            return walk::trace_one::<ANY, S>(features, self, ray, spheres);
         }
         let rung = self.rung.to_u32();
         if ANY {
@@ -120,12 +122,35 @@ impl Traversal for Single<'_> {
     }
 }
 
+/// Spheres that may lie side by side in memory.
+pub trait Resting: Spheres {
+    /// All of them, where [`Spheres::sphere`] has them; none if they move.
+    fn at_rest(&self) -> Option<&[Sphere]>;
+}
+
+impl Resting for [Sphere] {
+    #[inline]
+    fn at_rest(&self) -> Option<&[Sphere]> {
+        Some(self)
+    }
+}
+
+impl Resting for MovingSpheres<'_> {
+    #[inline]
+    fn at_rest(&self) -> Option<&[Sphere]> {
+        let moves = self.effects.any(Effects::MOTION_BLUR) & !self.velocities.is_empty();
+        (!moves).then_some(self.spheres)
+    }
+}
+
 /// A ray on its way among spheres.
 #[derive(Clone, Copy)]
 pub(super) struct Search {
     intersect: fn(Sphere, &Ray) -> f32,
     /// Whether the rung takes so long that it is asked at the end, as in the kernel's walk.
     is_lazy: bool,
+    /// Whether hits of the rung are where [`bounds`](spherule_kernel::bounds) have them.
+    is_bounded: bool,
     /// Ends where a sphere could still be of interest.
     pub(super) ray: Ray,
     line: Line,
@@ -144,6 +169,7 @@ impl Search {
         Self {
             intersect,
             is_lazy: rung >= Rung::Compensated,
+            is_bounded: rung >= Rung::Robust,
             ray: Ray {
                 t_max: ray.end(),
                 ..*ray
@@ -221,30 +247,74 @@ impl Search {
             };
             let mut found = self.sift(four);
             found &= (1 << (end - at).min(LANES as u32)) - 1;
-            while found != 0 {
-                let lane = found.trailing_zeros();
-                found &= found - 1;
-                let (sphere, index) = (four[lane as usize], at + lane);
-                if self.is_lazy {
-                    if self.is_certain(sphere, index) {
-                        if ANY & self.hit.is_some() {
-                            return;
-                        }
-                        continue;
-                    }
-                    self.ask_at_last();
-                }
-                let t = (self.intersect)(sphere, &self.ray);
-                if t < self.ray.t_max {
-                    if (t < self.hit.t) | (index < self.hit.sphere) {
-                        self.found_at(t, index);
-                    }
-                    if ANY {
-                        return;
-                    }
-                }
+            self.ask::<ANY, S>(spheres, at, found);
+            if ANY & self.hit.is_some() {
+                return;
             }
             at += LANES as u32;
+        }
+    }
+
+    /// [`test`](Search::test) of sixteen at a time.
+    #[cfg(target_arch = "x86_64")]
+    #[inline(always)]
+    pub(super) fn test_wide<const ANY: bool>(
+        &mut self,
+        _: Avx512,
+        spheres: &[Sphere],
+        first: u32,
+        count: u32,
+    ) {
+        let all = spheres.len() as u32;
+        let first = first.min(all);
+        let end = first + count.min(all - first);
+        let mut at = first;
+        while at < end {
+            let end_here = self.ray.t_max * self.line.unit;
+            // SAFETY: the machine has AVX-512, as the proof says.
+            let found = unsafe {
+                let some = spheres.get_unchecked(at as usize..end as usize);
+                avx512::sift(&self.line, end_here, self.is_bounded, some)
+            };
+            self.ask::<ANY, [Sphere]>(spheres, at, found);
+            if ANY & self.hit.is_some() {
+                return;
+            }
+            at += avx512::LANES as u32;
+        }
+    }
+
+    /// Asks about those spheres from `first` on whose bit is set, which are there.
+    #[inline(always)]
+    pub(super) fn ask<const ANY: bool, S: Spheres + ?Sized>(
+        &mut self,
+        spheres: &S,
+        first: u32,
+        mut found: u32,
+    ) {
+        while found != 0 {
+            let index = first + found.trailing_zeros();
+            found &= found - 1;
+            // SAFETY: the sphere is there.
+            let sphere = unsafe { spheres.sphere(index) };
+            if self.is_lazy {
+                if self.is_certain(sphere, index) {
+                    if ANY & self.hit.is_some() {
+                        return;
+                    }
+                    continue;
+                }
+                self.ask_at_last();
+            }
+            let t = (self.intersect)(sphere, &self.ray);
+            if t < self.ray.t_max {
+                if (t < self.hit.t) | (index < self.hit.sphere) {
+                    self.found_at(t, index);
+                }
+                if ANY {
+                    return;
+                }
+            }
         }
     }
 

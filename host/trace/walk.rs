@@ -1,0 +1,449 @@
+//! The walk of [`Single`](super::single::Single) on machines with wide instructions: the eight boxes of a node side by side.
+//!
+//! What differs from the kernel's walk is that the nearest box is entered first, that one beyond the
+//! nearest hit is left out when its turn comes, and that four rays take turns, so that what one waits for does
+//! not hold up the others. With AVX-512 the boxes of a node without nodes in it are not looked at: its spheres, which are 32
+//! at most, are tested sixteen at a time.
+
+use std::arch::x86_64::*;
+use std::mem::MaybeUninit;
+
+use spherule_kernel::tree::{Node, Slabs};
+use spherule_kernel::{Hit, Ray};
+
+use super::avx2::Avx2;
+use super::avx512::Avx512;
+use super::single::{Resting, Search, Single};
+
+const WIDTH: usize = Node::WIDTH;
+/// The most entries of a stack: each node on the way leaves at most seven behind, and a last one is written
+/// eight at once.
+const MAX_HEIGHT: usize = Node::MAX_DEPTH * (WIDTH - 1) + WIDTH;
+/// Rays that take turns.
+const RAYS: usize = 4;
+
+/// Instructions that a machine has, by the proof of it.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Features {
+    Avx2(Avx2),
+    Avx512(Avx512),
+}
+
+impl Features {
+    /// The widest of this machine; `None` if it has not even AVX2.
+    pub(super) fn detect() -> Option<Self> {
+        let avx512 = Avx512::detect().map(Self::Avx512);
+        avx512.or_else(|| Avx2::detect().map(Self::Avx2))
+    }
+}
+
+/// How boxes and spheres are tested: a value is the proof that the machine has the instructions.
+pub(super) trait Wide: Copy {
+    /// What stays the same of a ray from node to node.
+    type Planes;
+
+    fn planes(self, slabs: &Slabs) -> Self::Planes;
+
+    /// Sets the end of the ray, as [`Slabs::widened_end`] has it.
+    fn end_at(self, planes: &mut Self::Planes, end: f32);
+
+    /// Which of a node's boxes the ray may meet, a bit each, and where it enters them.
+    fn meets(self, planes: &Self::Planes, node: &Node) -> (u32, __m256);
+
+    /// The keys of those of the boxes that are met, as [`Stack`] has them, the largest first; behind them negative ones.
+    fn keys(self, met: u32, near: __m256) -> __m256i;
+
+    /// Tests the spheres of a node without nodes in it, if that is better than to look at its boxes.
+    fn test_all<const ANY: bool, S: Resting + ?Sized>(
+        self,
+        search: &mut Search,
+        spheres: &S,
+        node: &Node,
+    ) -> bool;
+}
+
+/// What a ray hits: the nearest, or with `ANY` the first that is found.
+pub(super) fn trace_one<const ANY: bool, S: Resting + ?Sized>(
+    features: Features,
+    single: &Single<'_>,
+    ray: &Ray,
+    spheres: &S,
+) -> Hit {
+    match features {
+        // SAFETY: the machine has the features.
+        Features::Avx2(wide) => unsafe { one_with_avx2::<ANY, _, S>(wide, single, ray, spheres) },
+        // SAFETY: as above.
+        Features::Avx512(wide) => unsafe {
+            one_with_avx512::<ANY, _, S>(wide, single, ray, spheres)
+        },
+    }
+}
+
+/// What each ray hits; `put` is told the ray's index.
+pub(super) fn trace<const ANY: bool, S: Resting + ?Sized>(
+    features: Features,
+    single: &Single<'_>,
+    rays: &[Ray],
+    spheres: &S,
+    put: impl FnMut(usize, Hit),
+) {
+    match features {
+        // SAFETY: the machine has the features.
+        Features::Avx2(wide) => unsafe {
+            all_with_avx2::<ANY, _, S>(wide, single, rays, spheres, put);
+        },
+        // SAFETY: as above.
+        Features::Avx512(wide) => unsafe {
+            all_with_avx512::<ANY, _, S>(wide, single, rays, spheres, put);
+        },
+    }
+}
+
+macro_rules! with_features {
+    ($one:ident, $all:ident, $features:literal) => {
+        #[target_feature(enable = $features)]
+        fn $one<const ANY: bool, W: Wide, S: Resting + ?Sized>(
+            wide: W,
+            single: &Single<'_>,
+            ray: &Ray,
+            spheres: &S,
+        ) -> Hit {
+            let mut stack = Stack::new();
+            let mut walk = Walk::of(wide, single, ray);
+            while walk.step::<ANY, S>(single.nodes, spheres, &mut stack) {}
+            walk.search.finish::<ANY>()
+        }
+
+        #[target_feature(enable = $features)]
+        fn $all<const ANY: bool, W: Wide, S: Resting + ?Sized>(
+            wide: W,
+            single: &Single<'_>,
+            rays: &[Ray],
+            spheres: &S,
+            put: impl FnMut(usize, Hit),
+        ) {
+            in_turns::<ANY, W, S>(wide, single, rays, spheres, put);
+        }
+    };
+}
+
+with_features!(
+    one_with_avx2,
+    all_with_avx2,
+    "avx2,fma,bmi1,bmi2,lzcnt,popcnt"
+);
+with_features!(
+    one_with_avx512,
+    all_with_avx512,
+    "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt"
+);
+
+#[inline(always)]
+fn in_turns<const ANY: bool, W: Wide, S: Resting + ?Sized>(
+    wide: W,
+    single: &Single<'_>,
+    rays: &[Ray],
+    spheres: &S,
+    mut put: impl FnMut(usize, Hit),
+) {
+    let nodes = single.nodes;
+    let mut stacks = [const { Stack::new() }; RAYS];
+    let mut rest = rays.iter().enumerate();
+    let mut walks = [const { MaybeUninit::<Walk<W>>::uninit() }; RAYS];
+    let mut indices = [0; RAYS];
+    // How many are under way: the first ones.
+    let mut count = 0;
+    for (walk, index) in walks.iter_mut().zip(&mut indices) {
+        let Some((of, ray)) = rest.next() else { break };
+        walk.write(Walk::of(wide, single, ray));
+        *index = of;
+        count += 1;
+    }
+    while count > 0 {
+        let mut place = 0;
+        while place < count {
+            // SAFETY: `place` is below `count`.
+            let walk = unsafe { walks[place].assume_init_mut() };
+            if walk.step::<ANY, S>(nodes, spheres, &mut stacks[place]) {
+                place += 1;
+                continue;
+            }
+            put(indices[place], walk.search.finish::<ANY>());
+            if let Some((of, ray)) = rest.next() {
+                *walk = Walk::of(wide, single, ray);
+                indices[place] = of;
+                place += 1;
+            } else {
+                // The last takes its place.
+                count -= 1;
+                walks.swap(place, count);
+                stacks.swap(place, count);
+                indices.swap(place, count);
+            }
+        }
+    }
+}
+
+/// Boxes that were met and not entered yet, the nearest of the latest on top. A key is where the ray
+/// enters a box, as a float's bits, whose lowest three say which child of its parent that is.
+struct Stack {
+    keys: [MaybeUninit<i32>; MAX_HEIGHT],
+    parents: [MaybeUninit<u32>; MAX_HEIGHT],
+}
+
+impl Stack {
+    const fn new() -> Self {
+        Self {
+            keys: [const { MaybeUninit::uninit() }; MAX_HEIGHT],
+            parents: [const { MaybeUninit::uninit() }; MAX_HEIGHT],
+        }
+    }
+
+    /// Puts eight at `height`, which is made to be in range.
+    #[inline(always)]
+    fn put(&mut self, _: impl Wide, height: usize, keys: __m256i, parent: u32) {
+        let height = height.min(MAX_HEIGHT - WIDTH);
+        // SAFETY: the machine has AVX2, and there is room for eight from `height` on.
+        unsafe {
+            let parents = _mm256_set1_epi32(parent.cast_signed());
+            _mm256_storeu_si256(self.keys.as_mut_ptr().add(height).cast(), keys);
+            _mm256_storeu_si256(self.parents.as_mut_ptr().add(height).cast(), parents);
+        }
+    }
+
+    /// The key and the parent at `height`.
+    ///
+    /// # Safety
+    ///
+    /// Eight were put there, or so far below that they reach it.
+    #[inline(always)]
+    unsafe fn get(&self, height: usize) -> (i32, u32) {
+        let height = height.min(MAX_HEIGHT - 1);
+        // SAFETY: `height` is in range, and what is there the caller's.
+        unsafe {
+            (
+                self.keys.get_unchecked(height).assume_init(),
+                self.parents.get_unchecked(height).assume_init(),
+            )
+        }
+    }
+}
+
+/// A ray on its way through a tree.
+struct Walk<W: Wide> {
+    wide: W,
+    search: Search,
+    planes: W::Planes,
+    /// The start of the ray's interval, which the planes count from.
+    start: f32,
+    unit: f32,
+    /// The largest key that is of interest.
+    last_key: i32,
+    /// The node whose boxes are next.
+    node: u32,
+    /// Entries on the stack.
+    height: usize,
+}
+
+impl<W: Wide> Walk<W> {
+    #[inline(always)]
+    fn of(wide: W, single: &Single<'_>, ray: &Ray) -> Self {
+        let slabs = Slabs::of(single.rung.to_u32(), ray, single.nodes);
+        let mut walk = Self {
+            wide,
+            search: single.search(ray),
+            planes: wide.planes(&slabs),
+            start: slabs.start,
+            unit: slabs.unit,
+            last_key: 0,
+            node: Node::ROOT,
+            height: 0,
+        };
+        walk.end_at(ray.end());
+        walk
+    }
+
+    /// What is beyond `t` is of no interest any more.
+    #[inline(always)]
+    fn end_at(&mut self, t: f32) {
+        let end = Slabs::widened_end(t * self.unit - self.start);
+        self.wide.end_at(&mut self.planes, end);
+        // A ray that ends before it starts has no boxes.
+        self.last_key = (end.max(0.0).to_bits() | 7).cast_signed();
+    }
+
+    /// Tests one node's boxes, and the spheres that are next before another node is; false once the ray
+    /// is done.
+    #[inline(always)]
+    fn step<const ANY: bool, S: Resting + ?Sized>(
+        &mut self,
+        nodes: &[Node],
+        spheres: &S,
+        stack: &mut Stack,
+    ) -> bool {
+        let last = nodes.len() - 1;
+        let mut node = &nodes[(self.node as usize).min(last)];
+        let has_nodes = node.corner.w != 0;
+        if has_nodes
+            || !self
+                .wide
+                .test_all::<ANY, S>(&mut self.search, spheres, node)
+        {
+            // One that is met goes by the stack, too: a processor guesses wrong how many are.
+            let (met, near) = self.wide.meets(&self.planes, node);
+            let keys = self.wide.keys(met, near);
+            stack.put(self.wide, self.height, keys, self.node);
+            self.height += met.count_ones() as usize;
+        } else {
+            if ANY && self.search.hit.is_some() {
+                return false;
+            }
+            self.end_at(self.search.ray.t_max);
+        }
+        loop {
+            let Some((child, parent)) = self.pop(stack) else {
+                return false;
+            };
+            node = &nodes[(parent as usize).min(last)];
+            if node.is_node(child) {
+                self.node = node.child(child);
+                let next: *const Node = &raw const nodes[(self.node as usize).min(last)];
+                // SAFETY: asking for memory changes nothing.
+                unsafe {
+                    _mm_prefetch::<_MM_HINT_T0>(next.cast());
+                    _mm_prefetch::<_MM_HINT_T0>(next.cast::<i8>().wrapping_add(64));
+                    _mm_prefetch::<_MM_HINT_T0>(next.cast::<i8>().wrapping_add(127));
+                }
+                return true;
+            }
+            let (first, count) = node.leaf(child);
+            self.search.test::<ANY, S>(spheres, first, count);
+            if ANY && self.search.hit.is_some() {
+                return false;
+            }
+            self.end_at(self.search.ray.t_max);
+        }
+    }
+
+    /// The next box of interest: which child of which node.
+    #[inline(always)]
+    fn pop(&mut self, stack: &Stack) -> Option<(u32, u32)> {
+        while self.height > 0 {
+            self.height -= 1;
+            // SAFETY: what is below the height was put there.
+            let (key, parent) = unsafe { stack.get(self.height) };
+            if key <= self.last_key {
+                return Some((key.cast_unsigned() & 7, parent));
+            }
+        }
+        None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+    use spherule_kernel::nearest::{MovingSpheres, Spheres, is_occluded, nearest_hit_in};
+    use spherule_kernel::{Effects, Rung, Sphere};
+
+    use super::*;
+    use crate::accuracy::random::Random;
+    use crate::scene::tree::grow_still;
+
+    /// Spheres of many sizes, and one around all.
+    fn world(random: &mut Random) -> Vec<Sphere> {
+        let mut spheres: Vec<Sphere> = (0..3000)
+            .map(|_| Sphere::new(random.vec3(-1.0, 1.0), random.log_within(0.001, 0.1)))
+            .collect();
+        spheres.push(Sphere::new(Vec3::ZERO, 5.0));
+        spheres
+    }
+
+    /// From anywhere to anywhere, some of them short, some from before their origin on.
+    fn rays(random: &mut Random) -> Vec<Ray> {
+        (0..1600)
+            .map(|index| {
+                let (origin, direction) = (random.vec3(-1.5, 1.5), random.vec3(-1.0, 1.0));
+                let (t_min, t_max) = match index % 4 {
+                    0 => (0.0, f32::MAX),
+                    1 => (1e-3, random.within(0.0, 2.0)),
+                    2 => (-3.0, 3.0),
+                    _ => (0.5, f32::MAX),
+                };
+                Ray::within(origin, direction, t_min, t_max)
+            })
+            .collect()
+    }
+
+    fn compare<S: Resting + ?Sized>(nodes: &[Node], spheres: &S, rays: &[Ray]) {
+        let all = [
+            Avx2::detect().map(Features::Avx2),
+            Avx512::detect().map(Features::Avx512),
+        ];
+        for features in all.into_iter().flatten() {
+            for rung in Rung::ALL {
+                let single = Single::new(rung, nodes);
+                let code = rung.to_u32();
+                let expected = |ray: &Ray| nearest_hit_in(code, ray, spheres, 0, u32::MAX);
+                let (mut count, mut hits) = (0, 0);
+                trace::<false, S>(features, &single, rays, spheres, |index, hit| {
+                    let ray = &rays[index];
+                    assert_eq!(hit, expected(ray), "{features:?} {rung:?} {ray:?}");
+                    count += 1;
+                    hits += usize::from(hit.is_some());
+                });
+                assert_eq!(count, rays.len());
+                assert!(hits > rays.len() / 2, "{hits}");
+                trace::<true, S>(features, &single, rays, spheres, |index, hit| {
+                    let ray = &rays[index];
+                    let is_occluded = is_occluded(code, ray, spheres);
+                    assert_eq!(hit.is_some(), is_occluded, "{features:?} {rung:?} {ray:?}");
+                });
+                let one = trace_one::<false, S>(features, &single, &rays[0], spheres);
+                assert_eq!(one, expected(&rays[0]));
+            }
+        }
+    }
+
+    /// Each ray finds what testing every sphere finds, with all that this machine has, on every rung.
+    #[test]
+    fn walks_find_what_testing_every_sphere_finds() {
+        let mut random = Random::new(5);
+        let spheres = world(&mut random);
+        let tree = grow_still(&spheres, 1).expect("a tree");
+        compare(&tree.nodes, &tree.sort(&spheres)[..], &rays(&mut random));
+    }
+
+    /// Spheres in motion are tested where they are at the time, not where they lie in memory.
+    #[test]
+    fn walks_find_spheres_in_motion() {
+        let mut random = Random::new(6);
+        let spheres = world(&mut random);
+        let velocities = vec![Vec3::new(0.25, -0.5, 0.125).extend(0.0); spheres.len()];
+        let at = |spheres: &[Sphere]| -> Vec<Sphere> {
+            let moving = MovingSpheres {
+                spheres,
+                velocities: &velocities,
+                time: 1.0,
+                effects: Effects::MOTION_BLUR,
+            };
+            // SAFETY: there are as many.
+            (0..moving.count())
+                .map(|index| unsafe { moving.sphere(index) })
+                .collect()
+        };
+        let tree = grow_still(&at(&spheres), 1).expect("a tree");
+        let moving = MovingSpheres {
+            spheres: &tree.sort(&spheres),
+            velocities: &velocities,
+            time: 1.0,
+            effects: Effects::MOTION_BLUR,
+        };
+        compare(&tree.nodes, &moving, &rays(&mut random));
+        let resting = MovingSpheres {
+            effects: Effects::default(),
+            ..moving
+        };
+        assert!(moving.at_rest().is_none() && resting.at_rest().is_some());
+    }
+}
