@@ -28,8 +28,8 @@ const WIDTH: usize = Node::WIDTH;
 /// The squares of the directions' lengths for which [`bounds`] hold without scaling, which wants 1/|d| to be 1 at most: that of
 /// a camera's rays is, but for its rounding.
 const SQUARES: std::ops::Range<f32> = 0.999..(1_u64 << 40) as f32;
-/// 16u, u = 2⁻²⁴: what a box test may be off by for its terms, twice over.
-const SLACK: f32 = 16.0 / (1 << 24) as f32;
+/// 32u, u = 2⁻²⁴: what a box test may be off by for its terms, twice over.
+const SLACK: f32 = 32.0 / (1 << 24) as f32;
 
 /// Values of 16 rays.
 #[derive(Clone, Copy, Debug)]
@@ -63,12 +63,52 @@ pub struct Packet {
     frustum: Frustum,
 }
 
-/// What bounds the rays: inward normals of four planes through the origin, and the direction along which
-/// their parameters are depths.
-#[derive(Clone, Debug)]
+/// What bounds the rays.
+#[derive(Clone, Copy, Debug)]
 struct Frustum {
-    planes: [Vec3; 4],
-    forward: Vec3,
+    /// Four planes through the origin, with inward normals, and of each box what is farthest along them.
+    planes: [Plane; 4],
+    /// The direction along which the rays' parameters are depths, and of each box what is nearest.
+    forward: Plane,
+}
+
+/// A direction, and which of a node's rows of sides make the corner of a box that is wanted.
+#[derive(Clone, Copy, Debug)]
+struct Plane {
+    normal: Vec3,
+    rows: [usize; 3],
+}
+
+impl Plane {
+    fn farthest(normal: Vec3) -> Self {
+        let row = |axis: usize| axis + if normal[axis] > 0.0 { 3 } else { 0 };
+        Self {
+            normal,
+            rows: [row(0), row(1), row(2)],
+        }
+    }
+
+    fn nearest(normal: Vec3) -> Self {
+        Self {
+            normal,
+            ..Self::farthest(-normal)
+        }
+    }
+
+    /// Where the corners of eight boxes are along the normal, whose sides are told from `corner`.
+    #[inline(always)]
+    fn along(&self, corner: Vec3, sides: &[[f32; WIDTH]; 6]) -> [f32; WIDTH] {
+        let Vec3 { x, y, z } = self.normal;
+        let first = corner.dot(self.normal);
+        let [in_x, in_y, in_z] = self.rows.map(|row| &sides[row]);
+        std::array::from_fn(|child| in_x[child] * x + (in_y[child] * y + (in_z[child] * z + first)))
+    }
+
+    /// What [`along`](Plane::along) may be off by, and boxes be wider, if coordinates are off by this.
+    #[inline(always)]
+    fn slack(&self, off: f32) -> f32 {
+        self.normal.abs().element_sum() * off
+    }
 }
 
 /// A box on the way, or spheres in one.
@@ -107,8 +147,8 @@ impl Packet {
             end: [0.0; GROUPS],
             widening: 0.0,
             frustum: Frustum {
-                planes: [Vec3::ZERO; 4],
-                forward: Vec3::ZERO,
+                planes: [Plane::farthest(Vec3::ZERO); 4],
+                forward: Plane::nearest(Vec3::ZERO),
             },
         }
     }
@@ -149,9 +189,9 @@ impl Packet {
             self.a[group] = Lanes(a);
             self.has_bounds &= a.iter().all(|a| SQUARES.contains(a));
         }
-        let side = SIDE as u32 - 1;
-        let corners = [(0, 0), (side, 0), (side, side), (0, side)]
-            .map(|(x, y)| camera.ray(film(x, y)).direction.as_dvec3());
+        let last = SIDE - 1;
+        let corners = [(0, 0), (last, 0), (last, last), (0, last)]
+            .map(|(x, y)| (forward + right * columns[x] + up * rows[y]).as_dvec3());
         let middle = corners.iter().sum::<DVec3>();
         self.frustum = Frustum {
             planes: [0, 1, 2, 3].map(|index| {
@@ -163,9 +203,9 @@ impl Packet {
                 } else {
                     normal
                 };
-                side.as_vec3()
+                Plane::farthest(side.as_vec3())
             }),
-            forward,
+            forward: Plane::nearest(forward),
         };
     }
 
@@ -197,7 +237,7 @@ impl Packet {
             let o = shared.truncate();
             let radius = sphere.radius().abs();
             let off = (o.abs().element_sum() + radius) * SLACK + self.widening;
-            let nearest = o.dot(self.frustum.forward) - radius - off;
+            let nearest = o.dot(self.frustum.forward.normal) - radius - off;
             for group in 0..GROUPS {
                 if nearest > self.end[group] {
                     continue;
@@ -553,8 +593,16 @@ fn trace_on<const RUNG: u32>(packet: &mut Packet, nodes: &[Node], spheres: &[Sph
         packet.finish::<RUNG>(spheres);
         return;
     }
-    let widening = Extent::of_node(&nodes[0]).widening(RUNG, packet.origin);
+    let world = Extent::of_node(&nodes[0]);
+    let widening = world.widening(RUNG, packet.origin);
     packet.widening = widening;
+    // As large as any node's terms, as in the kernel's `Slabs`.
+    let size = world.low.abs().max(world.high.abs())
+        + packet.origin.abs()
+        + (world.high - world.low) * 2.0;
+    let off = size.element_sum() * SLACK + widening;
+    let slacks = packet.frustum.planes.map(|plane| plane.slack(off));
+    let forward_slack = packet.frustum.forward.slack(off);
     let mut stack = [Entry {
         depth: 0.0,
         first: 0,
@@ -574,8 +622,27 @@ fn trace_on<const RUNG: u32>(packet: &mut Packet, nodes: &[Node], spheres: &[Sph
             continue;
         }
         let node = &nodes[first];
-        let boxes = Boxes::of(node, packet.origin);
-        let (mut met, depths) = boxes.meets(&packet.frustum, widening, packet.end());
+        let sides = node.sides.each_ref().map(side_row);
+        let corner =
+            Vec3::from_array([node.corner.x, node.corner.y, node.corner.z].map(f32::from_bits))
+                - packet.origin;
+        // How far the boxes reach into the frustum, by the plane that they reach over the least.
+        let mut reach = [f32::MAX; WIDTH];
+        for (plane, slack) in packet.frustum.planes.iter().zip(slacks) {
+            let farthest = plane.along(corner, &sides);
+            for child in 0..WIDTH {
+                reach[child] = reach[child].min(farthest[child] + slack);
+            }
+        }
+        let mut depths = packet.frustum.forward.along(corner, &sides);
+        let end = packet.end();
+        let end = end + end.abs() * SLACK;
+        let mut met = 0;
+        for child in 0..WIDTH {
+            depths[child] -= forward_slack;
+            met |= u32::from((reach[child] >= 0.0) & (depths[child] <= end)) << child;
+        }
+        met &= children(node);
         let bottom = height;
         while met != 0 {
             let child = met.trailing_zeros();
@@ -617,86 +684,17 @@ fn side_row(words: &UVec4) -> [f32; WIDTH] {
     })
 }
 
-/// The eight boxes of a node, as seen from an origin.
-struct Boxes {
-    low: [[f32; WIDTH]; 3],
-    high: [[f32; WIDTH]; 3],
-    /// How large the terms of a coordinate are.
-    size: Vec3,
-    /// Which of the eight there are.
-    are_there: u32,
-}
-
-impl Boxes {
-    #[inline(always)]
-    fn of(node: &Node, origin: Vec3) -> Self {
-        let corner = [node.corner.x, node.corner.y, node.corner.z].map(f32::from_bits);
-        let offset = Vec3::from_array(corner) - origin;
-        let mut boxes = Self {
-            low: [[0.0; WIDTH]; 3],
-            high: [[0.0; WIDTH]; 3],
-            size: offset.abs(),
-            are_there: 0,
-        };
-        for axis in 0..3 {
-            let (low, high) = (side_row(&node.sides[axis]), side_row(&node.sides[3 + axis]));
-            boxes.size[axis] += high.iter().copied().fold(0.0, f32::max);
-            for child in 0..WIDTH {
-                boxes.low[axis][child] = low[child] + offset[axis];
-                boxes.high[axis][child] = high[child] + offset[axis];
-            }
-        }
-        for child in 0..WIDTH {
-            let is_there = (node.corner.w | node.links.z) >> (4 * child) & 15 != 0;
-            boxes.are_there |= u32::from(is_there) << child;
-        }
-        boxes
-    }
-
-    /// Which boxes the frustum may meet before the depth `end`, a bit each, and how deep they begin.
-    #[inline(always)]
-    fn meets(&self, frustum: &Frustum, widening: f32, end: f32) -> (u32, [f32; WIDTH]) {
-        let off = self.size.element_sum() * SLACK + widening;
-        let slack = |normal: Vec3| normal.abs().element_sum() * off;
-        let mut worst = [0.0_f32; WIDTH];
-        for normal in frustum.planes {
-            let farthest = self.along(normal, true);
-            let slack = slack(normal);
-            for child in 0..WIDTH {
-                worst[child] = worst[child].min(farthest[child] + slack);
-            }
-        }
-        let slack = slack(frustum.forward);
-        let mut nearest = self.along(frustum.forward, false);
-        let farthest = self.along(frustum.forward, true);
-        let end = end + end.abs() * SLACK;
-        let mut met = 0;
-        for child in 0..WIDTH {
-            nearest[child] -= slack;
-            let is_met =
-                (worst[child] >= 0.0) & (farthest[child] + slack >= 0.0) & (nearest[child] <= end);
-            met |= u32::from(is_met) << child;
-        }
-        (met & self.are_there, nearest)
-    }
-
-    /// The largest, or the smallest, of each box along a direction.
-    #[inline(always)]
-    fn along(&self, direction: Vec3, largest: bool) -> [f32; WIDTH] {
-        let side = |axis: usize| {
-            if (direction[axis] > 0.0) == largest {
-                &self.high[axis]
-            } else {
-                &self.low[axis]
-            }
-        };
-        let (x, y, z) = (side(0), side(1), side(2));
-        let mut sums = [0.0; WIDTH];
-        for child in 0..WIDTH {
-            sums[child] = x[child] * direction.x + y[child] * direction.y + z[child] * direction.z;
-        }
-        sums
-    }
+/// Which children there are, a bit each.
+#[inline(always)]
+fn children(node: &Node) -> u32 {
+    // Four bits of each; now the first says whether any was set.
+    let pairs = node.corner.w | node.links.z;
+    let any = pairs | pairs >> 1;
+    let any = (any | any >> 2) & 0x1111_1111;
+    // Bits 4c to bits c: pairs, fours, all eight.
+    let any = (any | any >> 3) & 0x0303_0303;
+    let any = (any | any >> 6) & 0x000f_000f;
+    (any | any >> 12) & 0xff
 }
 
 #[cfg(test)]
