@@ -3,11 +3,12 @@
 use std::time::{Duration, Instant};
 
 use serde::Serialize;
-use spherule_kernel::{Hit, Rung, Shading};
+use spherule_kernel::{Hit, Pixel, Rung, Shading};
 
 use super::rays::{Kind, RaySets};
 use crate::device::Device;
 use crate::error::Result;
+use crate::film;
 use crate::render::{self, QUIET, Settings, whole_image};
 use crate::scene::Scene;
 use crate::scene::tree::{self, Acceleration};
@@ -209,6 +210,7 @@ fn on_cpu(
     let mut times = Kind::ALL.map(|_| Vec::new());
     let mut found = [0; Kind::ALL.len()];
     let (mut hits, mut occluded) = (Vec::new(), Vec::new());
+    let mut pixels = film::allocate(scene.width, scene.height)?;
     for round in 0..=plan.rounds {
         for kind in Kind::ALL {
             let rays = sets.kind(kind);
@@ -216,9 +218,12 @@ fn on_cpu(
             let took: Duration;
             let index = kind as usize;
             if kind == Kind::Primary {
-                let pixels = render::cpu::render(&launch, &world, settings(plan), QUIET)?;
+                render::cpu::render_to(&mut pixels, &launch, &world, settings(plan), QUIET);
                 took = started.elapsed();
-                found[index] = pixels.iter().filter(|pixel| pixel.is_hit()).count();
+                found[index] = pixels
+                    .iter()
+                    .filter(|pixel: &&Pixel| pixel.is_hit())
+                    .count();
             } else if kind.is_any() {
                 tracer.occluded(plan.rung, rays, &mut occluded);
                 took = started.elapsed();

@@ -54,6 +54,20 @@ pub fn render(
     settings: Settings,
     progress: Progress<'_>,
 ) -> Result<Vec<Pixel>> {
+    let size = launch.tile_size;
+    let mut pixels = film::allocate(size.x, size.y)?;
+    render_to(&mut pixels, launch, world, settings, progress);
+    Ok(pixels)
+}
+
+/// [`render`] to where an image was before: `pixels`, row by row, of which there are as many as the launch has.
+pub fn render_to(
+    pixels: &mut [Pixel],
+    launch: &Launch,
+    world: &Prepared<'_>,
+    settings: Settings,
+    progress: Progress<'_>,
+) {
     const TEXTBOOK: u32 = Rung::Textbook.to_u32();
     const ROBUST: u32 = Rung::Robust.to_u32();
     const COMPENSATED: u32 = Rung::Compensated.to_u32();
@@ -66,10 +80,7 @@ pub fn render(
         Rung::Double => bands_on::<DOUBLE>,
         Rung::Certified => bands_on::<CERTIFIED>,
     };
-    let size = launch.tile_size;
-    let mut pixels = film::allocate(size.x, size.y)?;
-    bands(launch, world, settings.shading, progress, &mut pixels);
-    Ok(pixels)
+    bands(launch, world, settings.shading, progress, pixels);
 }
 
 fn bands_on<const RUNG: u32>(

@@ -10,7 +10,7 @@ use glam::{Mat4, Vec4};
 use spherule_kernel::bounds::Line;
 use spherule_kernel::candidates::SLACK;
 use spherule_kernel::nearest::{MovingSpheres, Spheres};
-use spherule_kernel::precision::intersect;
+use spherule_kernel::precision::{Precision, Robust, intersect};
 use spherule_kernel::traversal::Traversal;
 use spherule_kernel::tree::{Node, is_occluded_in_tree, nearest_hit_in_tree};
 use spherule_kernel::{Effects, Hit, Ray, Rung, Sphere};
@@ -149,6 +149,7 @@ pub(super) struct Search {
     intersect: fn(Sphere, &Ray) -> f32,
     /// Whether the rung takes so long that it is asked at the end, as in the kernel's walk.
     is_lazy: bool,
+    is_robust: bool,
     /// Whether hits of the rung are where [`bounds`](spherule_kernel::bounds) have them.
     is_bounded: bool,
     /// Ends where a sphere could still be of interest.
@@ -169,6 +170,7 @@ impl Search {
         Self {
             intersect,
             is_lazy: rung >= Rung::Compensated,
+            is_robust: rung == Rung::Robust,
             is_bounded: rung >= Rung::Robust,
             ray: Ray {
                 t_max: ray.end(),
@@ -306,7 +308,12 @@ impl Search {
                 }
                 self.ask_at_last();
             }
-            let t = (self.intersect)(sphere, &self.ray);
+            let t = if self.is_robust {
+                // Most rays are on it: without a call, and with the instructions that the walk is compiled for.
+                Robust::intersect(sphere, &self.ray)
+            } else {
+                (self.intersect)(sphere, &self.ray)
+            };
             if t < self.ray.t_max {
                 if (t < self.hit.t) | (index < self.hit.sphere) {
                     self.found_at(t, index);
