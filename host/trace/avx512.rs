@@ -66,7 +66,8 @@ impl Wide for Avx512 {
         let Some(spheres) = spheres.at_rest() else {
             return false;
         };
-        search.test_wide::<ANY>(self, spheres, node.links.y, node.links.z.count_ones());
+        let (first, count) = node.all_spheres();
+        search.test_wide::<ANY>(self, spheres, first, count);
         true
     }
 }

@@ -283,8 +283,7 @@ impl<W: Wide> Walk<W> {
     ) -> bool {
         let last = nodes.len() - 1;
         let mut node = &nodes[(self.node as usize).min(last)];
-        let has_nodes = node.corner.w != 0;
-        if has_nodes
+        if node.has_nodes()
             || !self
                 .wide
                 .test_all::<ANY, S>(&mut self.search, spheres, node)

@@ -27,7 +27,7 @@ use crate::{
 };
 
 /// Renders one launch: a tile of the image against a run of the spheres.
-#[spirv(compute(threads(8, 8), entry_point_name = "render"))]
+#[spirv(compute(threads(8, 16), entry_point_name = "render"))]
 pub fn render(
     #[spirv(global_invocation_id)] id: UVec3,
     #[spirv(spec_constant(id = 0, default = 0))] shading: u32,

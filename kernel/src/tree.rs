@@ -106,6 +106,20 @@ impl Node {
         (self.links.y + before, count)
     }
 
+    /// Whether any child is a node.
+    #[inline]
+    #[must_use]
+    pub fn has_nodes(&self) -> bool {
+        self.corner.w != 0
+    }
+
+    /// Where the spheres of all children begin, and how many they are.
+    #[inline]
+    #[must_use]
+    pub fn all_spheres(&self) -> (u32, u32) {
+        (self.links.y, self.links.z.count_ones())
+    }
+
     /// The side of the first of a word's two children: the lower half, as a float's upper half.
     #[inline]
     #[must_use]
