@@ -190,7 +190,7 @@ fn out_of_memory() {
         .zeroed::<u8>("the universe", 1 << 60)
         .expect_err("no machine has that much");
     assert!(matches!(error, Error::OutOfMemory { .. }), "{error:?}");
-    assert_says(&error, &["the universe"]);
+    assert_says(&error, &["the universe", "1152921504606846976 bytes"]);
     // The device lives on.
     assert!(gpu.zeroed::<u32>("a little", 4).is_ok());
 }

@@ -418,11 +418,10 @@ impl Gpu {
     pub fn zeroed<T: Pod>(&self, label: &str, len: usize) -> Result<Buffer<T>> {
         let usage = wgpu::BufferUsages::STORAGE;
         let size = self.storage_size::<T>(label, len, usage)?;
-        let raw = self
-            .watch
-            .checked(&self.device, &format!("allocating {label}"), || {
-                self.create_buffer(label, size, usage, false)
-            })?;
+        let during = format!("making room for {label}, {size} bytes");
+        let raw = self.watch.checked(&self.device, &during, || {
+            self.create_buffer(label, size, usage, false)
+        })?;
         Ok(Buffer::from_raw(raw, label, len))
     }
 
@@ -450,7 +449,7 @@ impl Gpu {
         let bytes: &[u8] = bytemuck::cast_slice(data);
         let nothing = vec![0xff; if data.is_empty() { size as usize } else { 0 }];
         let bytes = if data.is_empty() { &nothing } else { bytes };
-        let during = format!("uploading {label}");
+        let during = format!("uploading {label}, {size} bytes");
         let (raw, filled) = self.watch.checked(&self.device, &during, || {
             let raw = self.create_buffer(label, size, usage, true);
             // Where the allocation failed there is nothing to map, and the scope says why.

@@ -8,7 +8,7 @@ use crate::device::Gpu;
 
 /// Pixels of one tile at most: what one readback moves.
 const MAX_PIXELS: u64 = 1 << 23;
-/// Threads of a workgroup along each side, in the kernels that write images.
+/// Threads of a workgroup along a side, at least, in the kernels that write images.
 const WORKGROUP_SIDE: u64 = 8;
 
 /// The limits on the tiles of one image.
