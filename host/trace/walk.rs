@@ -1,4 +1,4 @@
-//! The walk of [`Single`](super::single::Single) on machines with wide instructions: the eight boxes of a node side by side.
+//! The walk of [`Single`] on machines with wide instructions: the eight boxes of a node side by side.
 //!
 //! What differs from the kernel's walk is that the nearest box is entered first, that one beyond the
 //! nearest hit is left out when its turn comes, and that four rays take turns, so that what one waits for does
