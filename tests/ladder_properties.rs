@@ -6,8 +6,10 @@ use proptest::prelude::*;
 use spherule::accuracy::oracle::Intersection;
 use spherule::accuracy::ulp;
 use spherule::kernel::bounds::Line;
+use spherule::kernel::cone::{Cone, Row};
+use spherule::kernel::glam::{Vec2, Vec4};
 use spherule::kernel::precision::intersect;
-use spherule::kernel::{Hit, Ray, Rung, Sphere};
+use spherule::kernel::{Camera, Hit, Ray, Rung, Sphere};
 
 /// A coordinate of the domain: anything up to 2²⁰, with small numbers as likely as large ones.
 fn coordinate() -> impl Strategy<Value = f32> {
@@ -54,6 +56,46 @@ fn aimed() -> impl Strategy<Value = (Ray, Sphere)> {
         )
 }
 
+/// A camera with a view of any width, in one of four cases with axes far from a right angle; a point of its film; and a
+/// sphere whose silhouette is near there: `off` radii away from the ray.
+fn seen() -> impl Strategy<Value = (Camera, Vec2, Sphere, f32)> {
+    let sizes = (-4_i32..4, -4_i32..4, -12_i32..16, -9_i32..3, 0_u32..4);
+    let off = prop_oneof![
+        0.0_f32..2.0,
+        (-20_i32..-3).prop_map(|e| 1.0 + 2.0_f32.powi(e)),
+        (-20_i32..-3).prop_map(|e| 1.0 - 2.0_f32.powi(e))
+    ];
+    (
+        vector(),
+        vector(),
+        vector(),
+        -1.0_f32..1.0,
+        -1.0_f32..1.0,
+        sizes,
+        off,
+    )
+        .prop_filter_map(
+            "there is such a camera",
+            |(eye, forward, aside, x, y, (width, height, far, small, skew), off)| {
+                let forward = forward.try_normalize()?;
+                let right = forward.cross(aside).try_normalize()?;
+                let mut up = right.cross(forward);
+                if skew == 0 {
+                    up = (up * 0.25 + forward + right).normalize();
+                }
+                let (right, up) = (right * 2.0_f32.powi(width), up * 2.0_f32.powi(height));
+                let camera = Camera::from_basis(eye, forward, right, up);
+                let film = Vec2::new(x, y);
+                let along = camera.ray(film).direction.try_normalize()?;
+                let distance = 2.0_f32.powi(far);
+                let radius = distance * 2.0_f32.powi(small);
+                let beside = along.cross(aside).try_normalize()?;
+                let center = eye + along * distance + beside * (off * radius);
+                Some((camera, film, Sphere::new(center, radius), off))
+            },
+        )
+}
+
 fn answer(rung: Rung, ray: &Ray, sphere: Sphere) -> Option<f32> {
     let t = intersect(rung.to_u32(), sphere, ray);
     assert!(!t.is_nan());
@@ -92,6 +134,32 @@ proptest! {
         }
         let is_hit = Rung::ALL.into_iter().any(|rung| answer(rung, &ray, sphere).is_some());
         prop_assert!(line.may_hit(sphere) | !is_hit);
+    }
+
+    /// What a rung says is hit reaches into the cone, whichever of the eight rays and four spheres it is; and what is
+    /// far off does not.
+    #[test]
+    fn cones_hold_all_hits((camera, film, sphere, off) in seen(), k in 0_usize..8, place in 0_usize..4) {
+        let ray = camera.ray(film);
+        let is_hit = Rung::ALL.into_iter().any(|rung| answer(rung, &ray, sphere).is_some());
+        let cone = Cone::of(sphere, &camera);
+        let mut x = [-film.x; 8];
+        x[k] = film.x;
+        let [low, high] = [[0, 1, 2, 3], [4, 5, 6, 7]].map(|of| Vec4::from_array(of.map(|i| x[i])));
+        let row = Row::of(&camera, low, high, film.y);
+        let mut cones = [Cone::none(); 4];
+        cones[place] = cone;
+        let may_meet = row.candidates(cones) >> (31 - 8 * place - k) & 1 == 1;
+        prop_assert!(may_meet | !is_hit, "{:?} {:?}", cone, row);
+        let reach = row.farther(Row::nothing(), cones[0], cones[1]);
+        let reach = row.farther(reach, cones[2], cones[3]);
+        prop_assert!(row.may_meet(reach) | !is_hit);
+        let (o, r) = (sphere.center() - camera.eye, sphere.radius());
+        let is_square = camera.right.dot(camera.up).abs() < 1e-3 * camera.right.length() * camera.up.length();
+        // Beyond the silhouette by a fifth, from outside, as large as a hundredth of what is seen.
+        if is_square && off > 1.2 && o.length() > 1.5 * r && r > 0.01 * o.length() && o.length() > 1e-3 * camera.eye.length() {
+            prop_assert!(!may_meet, "{:?} {:?}", cone, row);
+        }
     }
 
     /// Outside of the margin on |Δ| / (a r²), the class is right; and t is within 1 ulp where c has

@@ -255,8 +255,8 @@ fn render_tile(
                 part.material_ids.binding(),
                 world.materials.binding(),
             ];
-            // A thread has four pixels.
-            let mut threads = [tile.x.div_ceil(2), tile.y.div_ceil(2), 1];
+            // A thread has eight pixels of a row.
+            let mut threads = [tile.x.div_ceil(8), tile.y, 1];
             if !world.by_tiles {
                 bindings.push(part.nodes.binding());
                 threads = [tile.x, tile.y, 1];

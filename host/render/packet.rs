@@ -2,7 +2,7 @@
 //!
 //! The rays of a square share their origin. Four planes through the eye and the sides of the square
 //! bound them all, so that boxes are tested once for 64 rays; the eight boxes of a node are tested side by side.
-//! Spheres that are left are tested against 16 rays side by side by [`Shared`], of few operations, and
+//! Spheres that are left are tested against 16 rays side by side by the few operations of [`candidates`], and
 //! only what may be a hit is asked about on its rung: on [`Rung::Robust`] and [`Rung::Double`] 16 rays side by side again, with the
 //! very operations of the kernel, in their order; on [`Rung::Compensated`] and [`Rung::Certified`] about the nearest at the end,
 //! and about what [`bounds`] leave open.
@@ -13,7 +13,7 @@
 use glam::{DVec3, UVec2, UVec4, Vec3};
 use multiversion::multiversion;
 use spherule_kernel::bounds;
-use spherule_kernel::candidates::Shared;
+use spherule_kernel::candidates;
 use spherule_kernel::precision::intersect;
 use spherule_kernel::tree::{Extent, Node};
 use spherule_kernel::{Camera, Hit, Launch, Ray, Rung, Sphere};
@@ -233,9 +233,10 @@ impl Packet {
     #[inline(always)]
     fn test<const RUNG: u32>(&mut self, spheres: &[Sphere], first: u32, count: usize) {
         for (index, sphere) in spheres[first as usize..][..count].iter().enumerate() {
-            let shared = Shared::of(*sphere, self.origin).to_vec4();
-            let o = shared.truncate();
+            let o = sphere.center() - self.origin;
             let radius = sphere.radius().abs();
+            let (oo, rr) = (o.dot(o), radius * radius);
+            let c = (oo - rr) - candidates::SLACK * (oo + rr);
             let off = (o.abs().element_sum() + radius) * SLACK + self.widening;
             let nearest = o.dot(self.frustum.forward.normal) - radius - off;
             for group in 0..GROUPS {
@@ -244,10 +245,10 @@ impl Packet {
                 }
                 let mut discriminant = Lanes([0.0; LANES]);
                 for lane in 0..LANES {
-                    let b = shared.x * self.x[group].0[lane]
-                        + shared.y * self.y[group].0[lane]
-                        + shared.z * self.z[group].0[lane];
-                    discriminant.0[lane] = b * b - self.a[group].0[lane] * shared.w;
+                    let b = o.x * self.x[group].0[lane]
+                        + o.y * self.y[group].0[lane]
+                        + o.z * self.z[group].0[lane];
+                    discriminant.0[lane] = b * b - self.a[group].0[lane] * c;
                 }
                 // A number that is none is asked about, too.
                 let mut may_hit = false;

@@ -4,15 +4,16 @@
 //! Bindings are in descriptor set 0, in the order of the parameters. Buffers are as long as
 //! the work; threads beyond it return.
 
-use glam::{UVec2, UVec3, UVec4, Vec4};
+use glam::{UVec2, UVec3, Vec2, Vec4};
 use spirv_std::arch::{IndexUnchecked, workgroup_memory_barrier_with_group_sync};
 use spirv_std::spirv;
 
 use crate::canary::{Operands, Outcome, sing};
 #[cfg(any(not(target_arch = "spirv"), feature = "f64"))]
 use crate::canary::{WideOutcome, sing_wide};
-use crate::candidates::{Shared, all_miss, candidates, discriminants, unit_of};
+use crate::cone::{Cone, Reach, Row};
 use crate::film::render_pixel;
+use crate::instructions::highest_bit;
 use crate::integrate::{Scenery, trace_pixel};
 use crate::nearest::{is_occluded, nearest_hit_in};
 use crate::optics::{Fresnel, Incidence};
@@ -22,8 +23,8 @@ use crate::traversal::OneByOne;
 use crate::tree::{Node, is_occluded_in_tree, nearest_hit_in_tree};
 use crate::walk::{Walk, walk_inside};
 use crate::{
-    Accumulator, Effects, Hit, Launch, Light, Material, PathLaunch, Pixel, Ray, Sphere, Surface,
-    layout,
+    Accumulator, Camera, Effects, Hit, Launch, Light, Material, PathLaunch, Pixel, Ray, Sphere,
+    Surface, layout,
 };
 
 /// Renders one launch: a tile of the image against a run of the spheres.
@@ -60,12 +61,18 @@ pub fn render(
     }
 }
 
-/// Spheres that a workgroup keeps at hand.
+/// Spheres that a workgroup keeps at hand, and those that a thread looks at between two branches.
 const TILE: usize = 256;
+const STEP: u32 = 16;
+/// The threads of a workgroup for each tile, and the pixels of one row that each has.
+const GROUP: UVec2 = UVec2::new(8, 16);
+const PIXELS: u32 = 8;
+/// Pixels of a workgroup.
+const ALL: usize = (GROUP.x * GROUP.y * PIXELS) as usize;
 
-/// [`render`] for many spheres without a tree: a workgroup works out once what its 16 by 16 pixels
-/// share of a sphere, and each thread goes through the spheres with four of the pixels.
-#[spirv(compute(threads(8, 8), entry_point_name = "render_by_tiles"))]
+/// [`render`] for many spheres without a tree: a workgroup works out once what its 64 by 16 pixels
+/// share of a sphere, and each thread goes through the spheres with eight of the pixels.
+#[spirv(compute(threads(8, 16), entry_point_name = "render_by_tiles"))]
 pub fn render_by_tiles(
     #[spirv(local_invocation_id)] local: UVec3,
     #[spirv(workgroup_id)] group: UVec3,
@@ -77,20 +84,32 @@ pub fn render_by_tiles(
     #[spirv(storage_buffer, descriptor_set = 0, binding = 3)] materials: &[Material],
     #[spirv(storage_buffer, descriptor_set = 0, binding = 4)] pixels: &mut [Pixel],
     #[spirv(workgroup)] tile: &mut [Vec4; TILE],
+    #[spirv(workgroup)] nearest: &mut [f32; ALL],
+    #[spirv(workgroup)] found: &mut [u32; ALL],
 ) {
-    let thread = local.y * 8 + local.x;
-    let pixel = UVec2::new(group.x * 16 + local.x, group.y * 16 + local.y);
-    let ray_0 = ray_of(pixels, launch, pixel_of(pixel, 0));
-    let ray_1 = ray_of(pixels, launch, pixel_of(pixel, 1));
-    let ray_2 = ray_of(pixels, launch, pixel_of(pixel, 2));
-    let ray_3 = ray_of(pixels, launch, pixel_of(pixel, 3));
-    let unit_0 = unit_of(ray_0.direction);
-    let unit_1 = unit_of(ray_1.direction);
-    let unit_2 = unit_of(ray_2.direction);
-    let unit_3 = unit_of(ray_3.direction);
-    // Only what changes is carried from round to round.
-    let mut t_max = Vec4::new(ray_0.t_max, ray_1.t_max, ray_2.t_max, ray_3.t_max);
-    let mut found = UVec4::splat(Hit::NONE_SPHERE);
+    let thread = local.y * GROUP.x + local.x;
+    let first_pixel = UVec2::new(
+        group.x * GROUP.x * PIXELS + local.x,
+        group.y * GROUP.y + local.y,
+    );
+    let row = Row::of(
+        &launch.camera,
+        four_across(launch, first_pixel, 0),
+        four_across(launch, first_pixel, 4),
+        film(launch, first_pixel).y,
+    );
+    // What each pixel has found is not kept in registers, of which there are few; no other thread looks at it.
+    let mut which = 0;
+    while which < PIXELS {
+        let place = (GROUP.x * GROUP.y * which + thread) as usize;
+        // SAFETY: `place` is below the number of pixels.
+        unsafe {
+            *nearest.index_unchecked_mut(place) =
+                end_of(pixels, launch, pixel_of(first_pixel, which));
+            *found.index_unchecked_mut(place) = Hit::NONE_SPHERE;
+        }
+        which += 1;
+    }
 
     let len = spheres.len() as u32;
     let begin = launch.first_sphere.min(len);
@@ -101,103 +120,74 @@ pub fn render_by_tiles(
         workgroup_memory_barrier_with_group_sync();
         let mut at = thread;
         while at < TILE as u32 {
-            let mut shared = Shared::none();
+            let mut cone = Cone::none();
             if first + at < end {
                 // SAFETY: `end` is at most the number of spheres.
                 let sphere = unsafe { *spheres.index_unchecked((first + at) as usize) };
-                shared = Shared::of(sphere, launch.camera.eye);
+                cone = Cone::of(sphere, &launch.camera);
             }
             // SAFETY: `at` is below the tile's size.
-            unsafe { *tile.index_unchecked_mut(at as usize) = shared.to_vec4() };
-            at += 64;
+            unsafe { *tile.index_unchecked_mut(at as usize) = cone.to_vec4() };
+            at += GROUP.x * GROUP.y;
         }
         workgroup_memory_barrier_with_group_sync();
         let count = (end - first).min(TILE as u32);
         let mut at = 0;
         while at < count {
-            let here = at as usize;
-            // SAFETY: `at` is below the tile's size, and both are multiples of eight.
-            let (s0, s1, s2, s3) = unsafe {
-                (
-                    Shared::from_vec4(*tile.index_unchecked(here)),
-                    Shared::from_vec4(*tile.index_unchecked(here + 1)),
-                    Shared::from_vec4(*tile.index_unchecked(here + 2)),
-                    Shared::from_vec4(*tile.index_unchecked(here + 3)),
-                )
-            };
-            // SAFETY: as above.
-            let (s4, s5, s6, s7) = unsafe {
-                (
-                    Shared::from_vec4(*tile.index_unchecked(here + 4)),
-                    Shared::from_vec4(*tile.index_unchecked(here + 5)),
-                    Shared::from_vec4(*tile.index_unchecked(here + 6)),
-                    Shared::from_vec4(*tile.index_unchecked(here + 7)),
-                )
-            };
-            let low_0 = discriminants(unit_0, s0, s1, s2, s3);
-            let low_1 = discriminants(unit_1, s0, s1, s2, s3);
-            let low_2 = discriminants(unit_2, s0, s1, s2, s3);
-            let low_3 = discriminants(unit_3, s0, s1, s2, s3);
-            let high_0 = discriminants(unit_0, s4, s5, s6, s7);
-            let high_1 = discriminants(unit_1, s4, s5, s6, s7);
-            let high_2 = discriminants(unit_2, s4, s5, s6, s7);
-            let high_3 = discriminants(unit_3, s4, s5, s6, s7);
-            let low = all_miss(low_0) & all_miss(low_1) & all_miss(low_2) & all_miss(low_3);
-            let high = all_miss(high_0) & all_miss(high_1) & all_miss(high_2) & all_miss(high_3);
-            if (low & high) >> 31 == 0 {
-                // A byte a ray, a bit a sphere.
-                let mut left = candidates(low_0)
-                    | candidates(high_0) << 4
-                    | candidates(low_1) << 8
-                    | candidates(high_1) << 12
-                    | candidates(low_2) << 16
-                    | candidates(high_2) << 20
-                    | candidates(low_3) << 24
-                    | candidates(high_3) << 28;
-                // The rung's code stands here once, for whichever ray.
-                while left != 0 {
-                    let candidate = left.trailing_zeros();
-                    left &= left - 1;
-                    let index = first + at + (candidate & 7);
-                    let which = candidate >> 3;
-                    if index < end {
-                        let end_t = pick(t_max.x, t_max.y, t_max.z, t_max.w, which);
-                        // SAFETY: `end` is at most the number of spheres.
-                        let sphere = unsafe { *spheres.index_unchecked(index as usize) };
-                        let mut ray = launch.ray(pixel_of(pixel, which), &Pixel::default());
-                        ray.t_max = end_t;
-                        let t = intersect(rung, sphere, &ray);
-                        if t < end_t {
-                            if which == 0 {
-                                (t_max.x, found.x) = (t, index);
-                            }
-                            if which == 1 {
-                                (t_max.y, found.y) = (t, index);
-                            }
-                            if which == 2 {
-                                (t_max.z, found.z) = (t, index);
-                            }
-                            if which == 3 {
-                                (t_max.w, found.w) = (t, index);
+            let reach = farthest_of_four(tile, &row, Row::nothing(), at);
+            let reach = farthest_of_four(tile, &row, reach, at + 4);
+            let reach = farthest_of_four(tile, &row, reach, at + 8);
+            let reach = farthest_of_four(tile, &row, reach, at + 12);
+            if row.may_meet(reach) {
+                let mut four = at;
+                while four < at + STEP {
+                    let mut left = row.candidates(cones(tile, four));
+                    // The rung's code stands here once, for whichever ray.
+                    while left != 0 {
+                        // In the order of the spheres: of two at the same t the first stays.
+                        let bit = highest_bit(left);
+                        left &= !(1 << bit);
+                        let which = (31 - bit) & 7;
+                        let index = first + four + (31 - bit) / 8;
+                        if index < end {
+                            let place = (GROUP.x * GROUP.y * which + thread) as usize;
+                            // SAFETY: `place` is below the number of pixels.
+                            let end_t = unsafe { *nearest.index_unchecked(place) };
+                            // SAFETY: `end` is at most the number of spheres.
+                            let sphere = unsafe { *spheres.index_unchecked(index as usize) };
+                            let mut ray = launch.camera.ray(row.film(which));
+                            ray.t_max = end_t;
+                            let t = intersect(rung, sphere, &ray);
+                            if t < end_t {
+                                // SAFETY: as above.
+                                unsafe {
+                                    *nearest.index_unchecked_mut(place) = t;
+                                    *found.index_unchecked_mut(place) = index;
+                                }
                             }
                         }
                     }
+                    four += 4;
                 }
             }
-            at += 8;
+            at += STEP;
         }
         first += TILE as u32;
     }
 
     let mut which = 0;
-    while which < 4 {
-        let pixel = pixel_of(pixel, which);
+    while which < PIXELS {
+        let pixel = pixel_of(first_pixel, which);
         let place = place_of(pixels.len(), launch, pixel);
         if place < pixels.len() {
             let ray = launch.ray(pixel, &pixels[place]);
-            let hit = Hit {
-                t: pick(t_max.x, t_max.y, t_max.z, t_max.w, which),
-                sphere: pick(found.x, found.y, found.z, found.w, which),
+            let own = (GROUP.x * GROUP.y * which + thread) as usize;
+            // SAFETY: `own` is below the number of pixels.
+            let hit = unsafe {
+                Hit {
+                    t: *nearest.index_unchecked(own),
+                    sphere: *found.index_unchecked(own),
+                }
             };
             pixels[place] = launch.pixel(
                 shading,
@@ -213,37 +203,60 @@ pub fn render_by_tiles(
     }
 }
 
-/// The ray of a pixel, not farther than what it holds.
+/// Four of the tile's cones; it is a multiple of four long, and so is `at`, which is below its end.
 #[inline]
-fn ray_of(pixels: &[Pixel], launch: &Launch, pixel: UVec2) -> Ray {
+fn cones(tile: &[Vec4; TILE], at: u32) -> [Cone; 4] {
+    let at = at as usize;
+    // SAFETY: as said.
+    unsafe {
+        [
+            Cone::from_vec4(*tile.index_unchecked(at)),
+            Cone::from_vec4(*tile.index_unchecked(at + 1)),
+            Cone::from_vec4(*tile.index_unchecked(at + 2)),
+            Cone::from_vec4(*tile.index_unchecked(at + 3)),
+        ]
+    }
+}
+
+/// How far the rays of a row reach into four more cones.
+#[inline]
+fn farthest_of_four(tile: &[Vec4; TILE], row: &Row, so_far: Reach, at: u32) -> Reach {
+    let [first, second, third, fourth] = cones(tile, at);
+    row.farther(row.farther(so_far, first, second), third, fourth)
+}
+
+/// Where on the film a pixel of a launch is.
+#[inline]
+fn film(launch: &Launch, pixel: UVec2) -> Vec2 {
+    Camera::film(launch.tile_origin + pixel, launch.image_size)
+}
+
+/// How far to the right four of a thread's pixels are on the film.
+#[inline]
+fn four_across(launch: &Launch, first: UVec2, which: u32) -> Vec4 {
+    Vec4::new(
+        film(launch, pixel_of(first, which)).x,
+        film(launch, pixel_of(first, which + 1)).x,
+        film(launch, pixel_of(first, which + 2)).x,
+        film(launch, pixel_of(first, which + 3)).x,
+    )
+}
+
+/// Up to where the ray of a pixel is of interest: not farther than what it holds.
+#[inline]
+fn end_of(pixels: &[Pixel], launch: &Launch, pixel: UVec2) -> f32 {
     let place = place_of(pixels.len(), launch, pixel);
     if place < pixels.len() {
-        launch.ray(pixel, &pixels[place])
+        launch.ray(pixel, &pixels[place]).t_max
     } else {
-        launch.ray(pixel, &Pixel::default())
+        Hit::NONE_T
     }
 }
 
-/// One of the four pixels that a thread has: the others are 8 to the right, below, and both.
+/// One of the pixels that a thread has: the others are to the right, as far apart as the workgroup is wide.
 #[inline]
 fn pixel_of(first: UVec2, which: u32) -> UVec2 {
-    first + UVec2::new(8 * (which & 1), 8 * (which >> 1))
-}
-
-/// One of four numbers, without an array in memory.
-#[inline]
-fn pick<T: Copy>(first: T, second: T, third: T, fourth: T, which: u32) -> T {
-    let mut number = first;
-    if which == 1 {
-        number = second;
-    }
-    if which == 2 {
-        number = third;
-    }
-    if which == 3 {
-        number = fourth;
-    }
-    number
+    first + UVec2::new(GROUP.x * which, 0)
 }
 
 /// Where a pixel of a launch is; `len` for one beyond the tile, which is traced for nothing because its

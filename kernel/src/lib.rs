@@ -15,7 +15,7 @@
 //! | [`precision`] | the ladder: ways to intersect a ray with a sphere |
 //! | [`nearest`] | the nearest hit of a ray among a slice of spheres, and whether there is any |
 //! | [`bounds`] | what few operations tell of a ray and a sphere for certain |
-//! | [`candidates`] | which of many spheres a rung must be asked about |
+//! | [`candidates`], [`cone`] | which of many spheres a rung must be asked about: by any ray, by a camera's |
 //! | [`tree`] | [`tree::Node`]: boxes around spheres, so that a ray looks at few |
 //! | [`traversal`] | what finds the hits of light paths |
 //! | [`surface`] | the point and the normal at a hit |
@@ -51,6 +51,7 @@ pub mod bounds;
 pub mod camera;
 pub mod canary;
 pub mod candidates;
+pub mod cone;
 pub mod effects;
 #[cfg(feature = "entry-points")]
 pub mod entry;

@@ -2,9 +2,9 @@
 // textbook in 32-bit floats.
 //
 // --variant plain:  one thread a pixel, spheres from global memory.
-// --variant tricks: spheres in tiles of shared memory, with what they share of the one origin worked out
-//                   once a tile (o = C - O and o.o - r^2), directions of unit length, four pixels a thread,
-//                   eight spheres a step; a ray that may hit one of the eight solves for t.
+// --variant tricks: spheres in tiles of shared memory, as the cones that they fill seen from the one origin (what a
+//                   camera's axes make with (C - O) / sqrt(o.o - r^2)), eight pixels of a row a thread, 16 spheres a
+//                   step, two operations a test; a ray that may hit solves for t as the renderer does.
 #include "scene.h"
 
 // Each kernel writes what the renderer it is compared with writes: a colour and a depth.
@@ -33,71 +33,99 @@ __global__ void plain(Camera camera, int width, int height, int count, const flo
     pixels[y * width + x] = pixel(nearest);
 }
 
-constexpr int TILE = 256, RAYS = 4, SIDE = 8, STEP = 8;
+constexpr int TILE = 256, RAYS = 8, WIDE = 8, HIGH = 16, THREADS = WIDE * HIGH, STEP = 16, FEW = 32 / RAYS;
 
-// With d of unit length.
-__device__ void solve(float b, float discriminant, float &nearest) {
-    if (discriminant >= 0.0f) {
-        float root = sqrtf(discriminant);
-        float t = b - root;
-        if (t < 1e-30f) t = b + root;
-        if (t >= 1e-30f && t < nearest) nearest = t;
-    }
+__device__ float dot(float3 a, float3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+
+// What the camera's axes make with the sphere's centre, in units of the distance at which rays touch it.
+__device__ float4 cone(float4 s, const Camera &camera) {
+    float3 o = make_float3(s.x - camera.eye.x, s.y - camera.eye.y, s.z - camera.eye.z);
+    float oo = dot(o, o), rr = s.w * s.w, c = (oo - rr) - (oo + rr) / (1 << 17);
+    if (!(c > 1e-30f && c < 1e30f)) return make_float4(0.0f, 0.0f, 3.4e38f, 0.0f);
+    float scale = rsqrtf(c);
+    return make_float4(dot(camera.right, o) * scale, dot(camera.up, o) * scale, dot(camera.forward, o) * scale, 0.0f);
+}
+
+// The first hit, by the foot of the perpendicular.
+__device__ float solve(float4 s, float3 eye, float3 d) {
+    float3 o = make_float3(eye.x - s.x, eye.y - s.y, eye.z - s.z);
+    float a = dot(d, d), b = dot(o, d), inverse = 1.0f / a, along = b * inverse;
+    float3 foot = make_float3(o.x - d.x * along, o.y - d.y * along, o.z - d.z * along);
+    float rr = s.w * s.w, discriminant = rr - dot(foot, foot), c = dot(o, o) - rr;
+    float size = fabsf(b) + sqrtf(a * discriminant), outer = size / a, inner = c / size;
+    float near = b < 0.0f ? inner : -outer, far = b < 0.0f ? outer : -inner;
+    float t = near >= 1e-30f ? near : far;
+    return discriminant >= 0.0f && t >= 1e-30f ? t : 3.4e38f;
 }
 
 __global__ void tricks(Camera camera, int width, int height, int count, const float4 *spheres,
                        float4 *pixels) {
     __shared__ float4 tile[TILE];
-    int x = blockIdx.x * SIDE + threadIdx.x, y = blockIdx.y * SIDE * RAYS + threadIdx.y;
-    int thread = threadIdx.y * SIDE + threadIdx.x;
-    float3 d[RAYS];
-    float inverse[RAYS], nearest[RAYS];
+    __shared__ float nearest[RAYS][THREADS];
+    __shared__ int found[RAYS][THREADS];
+    int x = blockIdx.x * WIDE * RAYS + threadIdx.x, y = blockIdx.y * HIGH + threadIdx.y;
+    int thread = threadIdx.y * WIDE + threadIdx.x;
+    float across[RAYS], lengths[RAYS], up = (height - 2 * y - 1) / (float)height;
 #pragma unroll
     for (int ray = 0; ray < RAYS; ray++) {
-        d[ray] = direction(camera, x, y + ray * SIDE, width, height);
-        inverse[ray] = rsqrtf(d[ray].x * d[ray].x + d[ray].y * d[ray].y + d[ray].z * d[ray].z);
-        d[ray] = make_float3(d[ray].x * inverse[ray], d[ray].y * inverse[ray], d[ray].z * inverse[ray]);
-        nearest[ray] = 3.4e38f;
+        across[ray] = (2 * (x + ray * WIDE) + 1 - width) / (float)width;
+        float3 d = direction(camera, x + ray * WIDE, y, width, height);
+        lengths[ray] = sqrtf(dot(d, d));
+        nearest[ray][thread] = 3.4e38f;
+        found[ray][thread] = -1;
     }
     for (int first = 0; first < count; first += TILE) {
         __syncthreads();
-        for (int i = thread; i < TILE; i += SIDE * SIDE) {
-            float4 o = make_float4(0.0f, 0.0f, 0.0f, 3.4e38f);
-            if (first + i < count) {
-                float4 s = spheres[first + i];
-                o = make_float4(s.x - camera.eye.x, s.y - camera.eye.y, s.z - camera.eye.z, 0.0f);
-                o.w = o.x * o.x + o.y * o.y + o.z * o.z - s.w * s.w;
-            }
-            tile[i] = o;
-        }
+        for (int i = thread; i < TILE; i += THREADS)
+            tile[i] = first + i < count ? cone(spheres[first + i], camera) : make_float4(0.0f, 0.0f, 0.0f, 0.0f);
         __syncthreads();
         int last = min(TILE, count - first);
         for (int i = 0; i < last; i += STEP) {
-            float4 o[STEP];
+            // As integers, of which three are compared by one instruction.
+            int farthest[RAYS];
 #pragma unroll
-            for (int k = 0; k < STEP; k++) o[k] = tile[i + k];
+            for (int k = 0; k < STEP; k += 2) {
+                float4 g = tile[i + k], h = tile[i + k + 1];
+                float row_g = fmaf(up, g.y, g.z), row_h = fmaf(up, h.y, h.z);
 #pragma unroll
-            for (int ray = 0; ray < RAYS; ray++) {
-                float b[STEP], discriminant[STEP], largest = -1.0f;
-#pragma unroll
-                for (int k = 0; k < STEP; k++) {
-                    b[k] = o[k].x * d[ray].x + o[k].y * d[ray].y + o[k].z * d[ray].z;
-                    discriminant[k] = b[k] * b[k] - o[k].w;
-                    largest = fmaxf(largest, discriminant[k]);
+                for (int ray = 0; ray < RAYS; ray++) {
+                    int a = __float_as_int(fmaf(across[ray], g.x, row_g));
+                    int b = __float_as_int(fmaf(across[ray], h.x, row_h));
+                    farthest[ray] = k == 0 ? max(a, b) : max(max(farthest[ray], a), b);
                 }
-                if (largest >= 0.0f) {
+            }
+            bool may_hit = false;
 #pragma unroll
-                    for (int k = 0; k < STEP; k++) solve(b[k], discriminant[k], nearest[ray]);
+            for (int ray = 0; ray < RAYS; ray++) may_hit |= farthest[ray] >= __float_as_int(lengths[ray]);
+            if (!may_hit) continue;
+#pragma unroll 1
+            for (int few = i; few < i + STEP; few += FEW) {
+                unsigned misses = 0;
+#pragma unroll
+                for (int k = 0; k < FEW; k++) {
+                    float4 g = tile[few + k];
+                    float row = fmaf(up, g.y, g.z);
+#pragma unroll
+                    for (int ray = 0; ray < RAYS; ray++)
+                        misses = __funnelshift_l(__float_as_uint(fmaf(across[ray], g.x, row) - lengths[ray]), misses, 1);
+                }
+                for (unsigned left = ~misses; left != 0;) {
+                    int at = __clz(left), ray = at % RAYS, index = first + few + at / RAYS;
+                    left &= ~(0x80000000u >> at);
+                    float3 d = direction(camera, x + ray * WIDE, y, width, height);
+                    float t = solve(spheres[index], camera.eye, d);
+                    if (t < nearest[ray][thread]) nearest[ray][thread] = t, found[ray][thread] = index;
                 }
             }
         }
     }
 #pragma unroll
-    for (int ray = 0; ray < RAYS; ray++) {
-        bool is_hit = nearest[ray] < 1e30f;
-        if (x < width && y + ray * SIDE < height)
-            pixels[(y + ray * SIDE) * width + x] = pixel(is_hit ? nearest[ray] * inverse[ray] : nearest[ray]);
-    }
+    for (int ray = 0; ray < RAYS; ray++)
+        if (x + ray * WIDE < width && y < height) {
+            float4 color = pixel(nearest[ray][thread]);
+            color.y = (float)found[ray][thread];
+            pixels[y * width + x + ray * WIDE] = color;
+        }
 }
 
 int main(int argc, char **argv) {
@@ -109,9 +137,9 @@ int main(int argc, char **argv) {
     int width = scene.width, height = scene.height, count = (int)scene.spheres.size();
     float4 *spheres = upload(scene.spheres);
     float4 *pixels = upload(std::vector<float4>((size_t)width * height));
-    dim3 block(SIDE, SIDE);
-    int rows = SIDE * (with_tricks ? RAYS : 1);
-    dim3 grid((width + SIDE - 1) / SIDE, (height + rows - 1) / rows);
+    dim3 block = with_tricks ? dim3(WIDE, HIGH) : dim3(8, 8);
+    int columns = block.x * (with_tricks ? RAYS : 1);
+    dim3 grid((width + columns - 1) / columns, (height + block.y - 1) / block.y);
     double seconds = fastest(arguments.repeat, [&] {
         if (with_tricks) tricks<<<grid, block>>>(scene.camera, width, height, count, spheres, pixels);
         else plain<<<grid, block>>>(scene.camera, width, height, count, spheres, pixels);
