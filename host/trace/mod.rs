@@ -11,6 +11,8 @@ mod avx2;
 #[cfg(target_arch = "x86_64")]
 mod avx512;
 pub mod cpu;
+#[cfg(target_arch = "x86_64")]
+mod flat;
 pub mod gpu;
 pub mod single;
 #[cfg(target_arch = "x86_64")]

@@ -4,7 +4,8 @@
 //! [`candidates`](spherule_kernel::candidates), whose slack covers every rung, and only what may be a hit is
 //! asked about on its rung; of the rungs that take long, only the nearest at the end, and what
 //! [`bounds`](spherule_kernel::bounds) leave open. With AVX2, which is looked for when the program runs, the eight boxes of a node
-//! are tested side by side, too; without it the kernel's walk does that.
+//! are tested side by side, too; without it the kernel's walk does that. With AVX-512 a small tree is looked at without its
+//! inner nodes.
 
 use glam::{Mat4, Vec4};
 use spherule_kernel::bounds::Line;
@@ -18,13 +19,15 @@ use spherule_kernel::{Effects, Hit, Ray, Rung, Sphere};
 #[cfg(target_arch = "x86_64")]
 use super::avx512::{self, Avx512};
 #[cfg(target_arch = "x86_64")]
+use super::flat::{self, Flat};
+#[cfg(target_arch = "x86_64")]
 use super::walk::{self, Features};
 
 /// Spheres side by side.
 const LANES: usize = 4;
 
 /// What finds the hits of rays on one rung, in a tree or without one.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Single<'a> {
     /// The rung.
     pub(super) rung: Rung,
@@ -35,6 +38,9 @@ pub struct Single<'a> {
     /// That the machine has it.
     #[cfg(target_arch = "x86_64")]
     features: Option<Features>,
+    /// The tree's bottom, if it is small and the machine has the instructions for that.
+    #[cfg(target_arch = "x86_64")]
+    flat: Option<(Avx512, Box<Flat>)>,
 }
 
 impl<'a> Single<'a> {
@@ -44,6 +50,15 @@ impl<'a> Single<'a> {
         fn on<const RUNG: u32>(sphere: Sphere, ray: &Ray) -> f32 {
             intersect(RUNG, sphere, ray)
         }
+        #[cfg(target_arch = "x86_64")]
+        let features = Features::detect();
+        #[cfg(target_arch = "x86_64")]
+        let flat = match features {
+            Some(Features::Avx512(wide)) if nodes.len() > Node::ROOT as usize => {
+                Flat::of(nodes).map(|flat| (wide, Box::new(flat)))
+            }
+            _ => None,
+        };
         Self {
             rung,
             intersect: match rung {
@@ -55,7 +70,9 @@ impl<'a> Single<'a> {
             },
             nodes,
             #[cfg(target_arch = "x86_64")]
-            features: Features::detect(),
+            features,
+            #[cfg(target_arch = "x86_64")]
+            flat,
         }
     }
 
@@ -67,6 +84,12 @@ impl<'a> Single<'a> {
         spheres: &S,
         mut put: impl FnMut(usize, Hit),
     ) {
+        #[cfg(target_arch = "x86_64")]
+        if let (Some((wide, flat)), Some(spheres)) = (&self.flat, spheres.at_rest()) {
+            // SAFETY: the machine has AVX-512, as the proof says.
+            unsafe { flat::trace::<ANY>(*wide, flat, self, rays, spheres, put) };
+            return;
+        }
         #[cfg(target_arch = "x86_64")]
         if let (Some(features), true) = (self.features, self.has_tree()) {
             walk::trace::<ANY, S>(features, self, rays, spheres, put);
@@ -86,6 +109,14 @@ impl<'a> Single<'a> {
             let mut search = self.search(ray);
             search.test::<ANY, S>(spheres, 0, spheres.count());
             return search.finish::<ANY>();
+        }
+        #[cfg(target_arch = "x86_64")]
+        if let (Some((wide, flat)), Some(spheres)) = (&self.flat, spheres.at_rest()) {
+            let mut found = Hit::NONE;
+            let ray = std::slice::from_ref(ray);
+            // SAFETY: the machine has AVX-512, as the proof says.
+            unsafe { flat::trace::<ANY>(*wide, flat, self, ray, spheres, |_, hit| found = hit) };
+            return found;
         }
         #[cfg(target_arch = "x86_64")]
         if let Some(features) = self.features {

@@ -340,7 +340,7 @@ impl<W: Wide> Walk<W> {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use glam::Vec3;
     use spherule_kernel::nearest::{MovingSpheres, Spheres, is_occluded, nearest_hit_in};
     use spherule_kernel::{Effects, Rung, Sphere};
@@ -350,8 +350,8 @@ mod tests {
     use crate::scene::tree::grow_still;
 
     /// Spheres of many sizes, and one around all.
-    fn world(random: &mut Random) -> Vec<Sphere> {
-        let mut spheres: Vec<Sphere> = (0..3000)
+    pub fn world(random: &mut Random, count: usize) -> Vec<Sphere> {
+        let mut spheres: Vec<Sphere> = (0..count)
             .map(|_| Sphere::new(random.vec3(-1.0, 1.0), random.log_within(0.001, 0.1)))
             .collect();
         spheres.push(Sphere::new(Vec3::ZERO, 5.0));
@@ -359,7 +359,7 @@ mod tests {
     }
 
     /// From anywhere to anywhere, some of them short, some from before their origin on.
-    fn rays(random: &mut Random) -> Vec<Ray> {
+    pub fn rays(random: &mut Random) -> Vec<Ray> {
         (0..1600)
             .map(|index| {
                 let (origin, direction) = (random.vec3(-1.5, 1.5), random.vec3(-1.0, 1.0));
@@ -408,7 +408,7 @@ mod tests {
     #[test]
     fn walks_find_what_testing_every_sphere_finds() {
         let mut random = Random::new(5);
-        let spheres = world(&mut random);
+        let spheres = world(&mut random, 3000);
         let tree = grow_still(&spheres, 1).expect("a tree");
         compare(&tree.nodes, &tree.sort(&spheres)[..], &rays(&mut random));
     }
@@ -417,7 +417,7 @@ mod tests {
     #[test]
     fn walks_find_spheres_in_motion() {
         let mut random = Random::new(6);
-        let spheres = world(&mut random);
+        let spheres = world(&mut random, 3000);
         let velocities = vec![Vec3::new(0.25, -0.5, 0.125).extend(0.0); spheres.len()];
         let at = |spheres: &[Sphere]| -> Vec<Sphere> {
             let moving = MovingSpheres {
