@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use spherule_kernel::tree::Node;
 use spherule_kernel::{Launch, Pixel, Rung, Shading};
 
-use super::packet::{self, Packet, SIDE};
+use super::packet::{self, Frusta, Packet, SIDE};
 use super::{Progress, Settings};
 use crate::error::Result;
 use crate::film;
@@ -114,6 +114,7 @@ fn bands<const SHADING: u32, const RUNG: u32>(
     let height = launch.tile_size.y as usize;
     let Prepared { world, nodes } = world;
     let rows_done = AtomicUsize::new(0);
+    let frusta = Frusta::of(launch);
     pixels
         .par_chunks_mut(width * SIDE)
         .enumerate()
@@ -121,7 +122,7 @@ fn bands<const SHADING: u32, const RUNG: u32>(
             let mut packet = Packet::new();
             for left in (0..width).step_by(SIDE) {
                 let corner = UVec2::new(left as u32, (band * SIDE) as u32);
-                packet::trace::<RUNG>(&mut packet, launch, corner, nodes, &world.spheres);
+                packet::trace::<RUNG>(&mut packet, launch, &frusta, corner, nodes, &world.spheres);
                 for (y, row) in pixels.chunks_mut(width).enumerate() {
                     for (x, pixel) in row[left..].iter_mut().take(SIDE).enumerate() {
                         let (ray, hit) = packet.hit(SIDE * y + x);

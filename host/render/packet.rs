@@ -10,7 +10,7 @@
 //! Loops over arrays become vector instructions; `multiversion` compiles them for several
 //! instruction sets and chooses one when the program runs.
 
-use glam::{DVec3, UVec2, UVec4, Vec3};
+use glam::{DVec3, UVec2, UVec4, Vec2, Vec3};
 use multiversion::multiversion;
 use spherule_kernel::bounds;
 use spherule_kernel::candidates;
@@ -63,7 +63,69 @@ pub struct Packet {
     frustum: Frustum,
 }
 
-/// What bounds the rays.
+/// What bounds the rays of each square of an image: what a column or a row of squares shares is worked out once.
+#[derive(Clone, Debug)]
+pub struct Frusta {
+    /// Of each column of squares the planes on its left and its right.
+    columns: Vec<[Plane; 2]>,
+    /// Of each row of squares the planes above and below it.
+    rows: Vec<[Plane; 2]>,
+    /// Where the pixels of each column and row of squares are on the film; those beyond the image are repeated ones.
+    across: Vec<[f32; SIDE]>,
+    upwards: Vec<[f32; SIDE]>,
+    forward: Plane,
+}
+
+impl Frusta {
+    /// Of the squares of a launch.
+    #[must_use]
+    pub fn of(launch: &Launch) -> Self {
+        let camera = &launch.camera;
+        let [forward, right, up] = [camera.forward, camera.right, camera.up].map(Vec3::as_dvec3);
+        let last = launch.tile_size - UVec2::ONE;
+        let film = |x: u32, y: u32| {
+            let pixel = launch.tile_origin + UVec2::new(x, y).min(last);
+            Camera::film(pixel, launch.image_size)
+        };
+        // Through the rays at x, or at y, and towards a side. A camera whose axes lie in a plane has none, and
+        // every box is inside.
+        let plane = |normal: DVec3, towards: DVec3| {
+            let normal = normal.normalize_or_zero();
+            Plane::farthest((normal * normal.dot(towards).signum()).as_vec3())
+        };
+        let squares = |pixels: u32| (0..pixels).step_by(SIDE);
+        let far = SIDE as u32 - 1;
+        let column = |x: u32| {
+            let normal = |x| (forward + right * f64::from(film(x, 0).x)).cross(up);
+            [plane(normal(x), right), plane(normal(x + far), -right)]
+        };
+        let row = |y: u32| {
+            let normal = |y| (forward + up * f64::from(film(0, y).y)).cross(right);
+            [plane(normal(y), -up), plane(normal(y + far), up)]
+        };
+        let pixels = |first: u32| std::array::from_fn(|i| first + i as u32);
+        let across = |x| pixels(x).map(|x| film(x, 0).x);
+        let upwards = |y| pixels(y).map(|y| film(0, y).y);
+        Self {
+            columns: squares(launch.tile_size.x).map(column).collect(),
+            rows: squares(launch.tile_size.y).map(row).collect(),
+            across: squares(launch.tile_size.x).map(across).collect(),
+            upwards: squares(launch.tile_size.y).map(upwards).collect(),
+            forward: Plane::nearest(camera.forward),
+        }
+    }
+
+    fn at(&self, corner: UVec2) -> Frustum {
+        let [left, right] = self.columns[corner.x as usize / SIDE];
+        let [above, below] = self.rows[corner.y as usize / SIDE];
+        Frustum {
+            planes: [left, right, above, below],
+            forward: self.forward,
+        }
+    }
+}
+
+/// What bounds the rays of a square.
 #[derive(Clone, Copy, Debug)]
 struct Frustum {
     /// Four planes through the origin, with inward normals, and of each box what is farthest along them.
@@ -154,16 +216,13 @@ impl Packet {
     }
 
     /// Takes the rays of the square whose upper left pixel is `corner`, counted from that of the tile.
-    /// Pixels beyond the tile's end are repeated ones.
     #[inline(always)]
-    fn aim(&mut self, launch: &Launch, corner: UVec2) {
+    fn aim(&mut self, launch: &Launch, frusta: &Frusta, corner: UVec2) {
+        self.frustum = frusta.at(corner);
         let camera = &launch.camera;
-        let last = launch.tile_size - UVec2::ONE;
-        let film = |x: u32, y: u32| {
-            let pixel = launch.tile_origin + (corner + UVec2::new(x, y)).min(last);
-            Camera::film(pixel, launch.image_size)
-        };
-        let first = camera.ray(film(0, 0));
+        let columns = &frusta.across[corner.x as usize / SIDE];
+        let rows = &frusta.upwards[corner.y as usize / SIDE];
+        let first = camera.ray(Vec2::new(columns[0], rows[0]));
         (self.origin, self.t_min) = (first.origin, first.t_min);
         self.t = [Lanes([first.t_max; LANES]); GROUPS];
         self.sphere = [[Hit::NONE_SPHERE; LANES]; GROUPS];
@@ -171,8 +230,6 @@ impl Packet {
         self.is_unasked = [[0; LANES]; GROUPS];
         self.end = [first.t_max; GROUPS];
         self.has_bounds = true;
-        let columns: [f32; SIDE] = std::array::from_fn(|x| film(x as u32, 0).x);
-        let rows: [f32; SIDE] = std::array::from_fn(|y| film(0, y as u32).y);
         let (forward, right, up) = (camera.forward, camera.right, camera.up);
         for group in 0..GROUPS {
             // A group is four by four pixels.
@@ -189,24 +246,6 @@ impl Packet {
             self.a[group] = Lanes(a);
             self.has_bounds &= a.iter().all(|a| SQUARES.contains(a));
         }
-        let last = SIDE - 1;
-        let corners = [(0, 0), (last, 0), (last, last), (0, last)]
-            .map(|(x, y)| (forward + right * columns[x] + up * rows[y]).as_dvec3());
-        let middle = corners.iter().sum::<DVec3>();
-        self.frustum = Frustum {
-            planes: [0, 1, 2, 3].map(|index| {
-                let normal = corners[index].cross(corners[(index + 1) % 4]);
-                // A square of one column has no such plane, and every box is inside of it.
-                let normal = normal.normalize_or_zero();
-                let side = if normal.dot(middle) < 0.0 {
-                    -normal
-                } else {
-                    normal
-                };
-                Plane::farthest(side.as_vec3())
-            }),
-            forward: Plane::nearest(forward),
-        };
     }
 
     /// The ray of a pixel, counted row by row, and what it has found.
@@ -413,15 +452,24 @@ impl Packet {
         });
         let root = lanes(|i| (a[i] * positive[i]).sqrt());
         let size = lanes(|i| b[i].abs() + root[i]);
-        let outer = lanes(|i| size[i] / a[i]);
         let quotient = lanes(|i| c / size[i]);
         let inner = lanes(|i| if size[i] > 0.0 { quotient[i] } else { 0.0 });
-        let near = lanes(|i| if b[i] < 0.0 { inner[i] } else { -outer[i] });
-        let far = lanes(|i| if b[i] < 0.0 { outer[i] } else { -inner[i] });
         let meets = lanes(|i| {
             let meets = (discriminant[i] >= 0.0) & (size[i] <= f32::MAX);
             if meets { 1.0 } else { 0.0 }
         });
+        // Where all that meet it do so ahead, and first in the interval, the other root is not asked for.
+        let mut asks_far = false;
+        for i in 0..LANES {
+            asks_far |= (meets[i] > 0.0) & !((b[i] < 0.0) & (inner[i] >= self.t_min));
+        }
+        if !asks_far {
+            self.take(group, index, &meets, &inner, &inner);
+            return;
+        }
+        let outer = lanes(|i| size[i] / a[i]);
+        let near = lanes(|i| if b[i] < 0.0 { inner[i] } else { -outer[i] });
+        let far = lanes(|i| if b[i] < 0.0 { outer[i] } else { -inner[i] });
         self.take(group, index, &meets, &near, &far);
     }
 
@@ -541,6 +589,7 @@ const fn place(index: usize) -> (usize, usize) {
 pub fn trace<const RUNG: u32>(
     packet: &mut Packet,
     launch: &Launch,
+    frusta: &Frusta,
     corner: UVec2,
     nodes: &[Node],
     spheres: &[Sphere],
@@ -556,7 +605,7 @@ pub fn trace<const RUNG: u32>(
         DOUBLE => trace_double,
         _ => trace_certified,
     };
-    trace(packet, launch, corner, nodes, spheres);
+    trace(packet, launch, frusta, corner, nodes, spheres);
 }
 
 macro_rules! on_rung {
@@ -569,11 +618,12 @@ macro_rules! on_rung {
         fn $name(
             packet: &mut Packet,
             launch: &Launch,
+            frusta: &Frusta,
             corner: UVec2,
             nodes: &[Node],
             spheres: &[Sphere],
         ) {
-            packet.aim(launch, corner);
+            packet.aim(launch, frusta, corner);
             trace_on::<{ Rung::$rung.to_u32() }>(packet, nodes, spheres);
         }
     };
@@ -727,12 +777,14 @@ mod tests {
         let sorted = tree.sort(spheres);
         let mut hits = 0;
         let mut packet = Packet::new();
+        let frusta = Frusta::of(launch);
         for (nodes, spheres) in [(&tree.nodes[..], &sorted[..]), (&[], spheres)] {
             for (left, top) in (0..SIZE.y)
                 .step_by(SIDE)
                 .flat_map(|top| (0..SIZE.x).step_by(SIDE).map(move |left| (left, top)))
             {
-                trace::<RUNG>(&mut packet, launch, UVec2::new(left, top), nodes, spheres);
+                let corner = UVec2::new(left, top);
+                trace::<RUNG>(&mut packet, launch, &frusta, corner, nodes, spheres);
                 for index in 0..RAYS {
                     let (ray, hit) = packet.hit(index);
                     let alone = nearest_hit_in(RUNG, &ray, spheres, 0, u32::MAX);
