@@ -19,8 +19,8 @@ use crate::kernel_module;
 use crate::scene::World;
 use crate::scene::tree::{self, Tree};
 
-/// From how many spheres on a tree pays against tiles of brute force: between 46 and 484.
-const MIN_FOR_TREE: usize = 256;
+/// From how many spheres on a tree pays against tiles of brute force: between 120 and 250.
+const MIN_FOR_TREE: usize = 192;
 /// From this many spheres on, those without a tree are gone through tile by tile.
 const MIN_FOR_TILES: usize = 16;
 /// What a ray takes in a tree, in intersections: a first guess, of which [`Pace`] learns more.

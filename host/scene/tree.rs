@@ -27,9 +27,9 @@ const GRAIN: usize = 1 << 13;
 const SHARED: usize = 1 << 16;
 /// Beyond this depth nodes are halved, whatever that costs a ray: 8¹² is more than there can be.
 const HALVING_DEPTH: usize = Node::MAX_DEPTH - 12;
-/// From how many spheres on a tree pays, for single rays on the CPU: between 32 and 48; camera rays by
+/// From how many spheres on a tree pays, for single rays on the CPU: 8 with AVX-512; camera rays by
 /// squares and rays on a GPU have thresholds of their own.
-pub const MIN_SPHERES: usize = 40;
+pub const MIN_SPHERES: usize = 12;
 
 /// Whether a tree is grown.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -11,7 +11,7 @@ use crate::kernel_module;
 use crate::scene::tree::{self, Acceleration};
 
 /// From how many spheres on a tree pays for single rays on a GPU.
-const MIN_SPHERES: usize = 32;
+const MIN_SPHERES: usize = 16;
 
 /// Spheres on a GPU, and the tree over them if one pays.
 #[derive(Debug)]
