@@ -80,7 +80,7 @@ fn hard_cases_are_hit_in_a_tree_of_a_million() {
             tree.occluded(rung, &rays, &mut occluded);
             let mut truth = vec![Hit::NONE; rays.len()];
             // Of equally near ones the first in the order of the leaves.
-            let all = Single::new(rung, &[]);
+            let all = Single::new(rung, &[], None);
             all.trace::<false, _>(&rays, &sorted[..], |index, hit| truth[index] = hit);
             for (index, ray) in rays.iter().enumerate() {
                 let truth = truth[index];

@@ -808,6 +808,7 @@ mod tests {
     use super::*;
     use crate::accuracy::families::Family;
     use crate::accuracy::random::Random;
+    use crate::trace::levels::Levels;
     use crate::trace::single::Single;
     use spherule_kernel::nearest::nearest_hit_in;
     use spherule_kernel::tree::{is_occluded_in_tree, nearest_hit_in_tree, work_in_tree};
@@ -874,6 +875,7 @@ mod tests {
                 world.add(sphere, 0);
             }
             let grown = Grown::over(&world);
+            let levels = Levels::of(&grown.nodes);
             let mut random = Random::new(5);
             let mut rays: Vec<Ray> = (0..2000)
                 .map(|i| {
@@ -906,10 +908,10 @@ mod tests {
                     vec![Hit::NONE; rays.len()],
                 ];
                 let [nearest, any, all] = &mut by_several;
-                let in_tree = Single::new(rung, &grown.nodes);
+                let in_tree = Single::new(rung, &grown.nodes, levels.as_ref());
                 in_tree.trace::<false, _>(&rays, spheres, |index, hit| nearest[index] = hit);
                 in_tree.trace::<true, _>(&rays, spheres, |index, hit| any[index] = hit);
-                let in_none = Single::new(rung, &[]);
+                let in_none = Single::new(rung, &[], None);
                 in_none.trace::<false, _>(&rays, spheres, |index, hit| all[index] = hit);
                 let rung = rung.to_u32();
                 for (index, ray) in rays.iter().enumerate() {

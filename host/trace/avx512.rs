@@ -195,14 +195,20 @@ fn keys(met: u32, near: __m256) -> __m256i {
     )
 }
 
-/// Which of up to sixteen spheres may be hit up to `end`, as the line counts it, a bit each.
+/// Which of up to sixteen spheres a line may hit, given by its origin, its direction and that one's square, a bit each.
 ///
-/// As [`Line::may_hit`]; and if `is_bounded`, on rungs from robust up, not those that are behind by
-/// [`Line::bounds`], nor those that lie beyond the end: no point of a sphere is nearer than o·d/a − r/|d|, |d| is at least
+/// As [`Line::may_hit`]; and if `bounded` by a line and its end, as the line counts it, on rungs from robust up, not those
+/// that are behind by [`Line::bounds`], nor those that lie beyond the end: no point of a sphere is nearer than o·d/a − r/|d|, |d| is at least
 /// one, and what the middle is off by is less than what bounds allow for.
 #[inline]
 #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
-pub(super) fn sift(line: &Line, end: f32, is_bounded: bool, spheres: &[Sphere]) -> u32 {
+pub(super) fn sift(
+    origin: Vec3,
+    direction: Vec3,
+    a: f32,
+    bounded: Option<(&Line, f32)>,
+    spheres: &[Sphere],
+) -> u32 {
     let count = spheres.len().min(LANES);
     // Four floats a sphere; what is not there is zero, and masked out.
     let there = _bzhi_u64(u64::MAX, 4 * count as u32);
@@ -212,12 +218,12 @@ pub(super) fn sift(line: &Line, end: f32, is_bounded: bool, spheres: &[Sphere]) 
         // SAFETY: masked lanes are not read, and the others are spheres of the slice.
         unsafe { _mm512_maskz_loadu_ps(mask, from) }
     };
-    let [a, b, c, d] = [four(0), four(1), four(2), four(3)];
+    let rows = [four(0), four(1), four(2), four(3)];
     let xy = _mm512_setr_epi32(0, 4, 8, 12, 16, 20, 24, 28, 1, 5, 9, 13, 17, 21, 25, 29);
     let zr = _mm512_setr_epi32(2, 6, 10, 14, 18, 22, 26, 30, 3, 7, 11, 15, 19, 23, 27, 31);
     let halves = |order| {
-        let first = _mm512_castps_pd(_mm512_permutex2var_ps(a, order, b));
-        let second = _mm512_castps_pd(_mm512_permutex2var_ps(c, order, d));
+        let first = _mm512_castps_pd(_mm512_permutex2var_ps(rows[0], order, rows[1]));
+        let second = _mm512_castps_pd(_mm512_permutex2var_ps(rows[2], order, rows[3]));
         (
             _mm512_castpd_ps(_mm512_shuffle_f64x2::<0b01_00_01_00>(first, second)),
             _mm512_castpd_ps(_mm512_shuffle_f64x2::<0b11_10_11_10>(first, second)),
@@ -225,26 +231,21 @@ pub(super) fn sift(line: &Line, end: f32, is_bounded: bool, spheres: &[Sphere]) 
     };
     let ((x, y), (z, r)) = (halves(xy), halves(zr));
     let splat = _mm512_set1_ps;
-    let Vec3 {
-        x: origin_x,
-        y: origin_y,
-        z: origin_z,
-    } = line.origin;
-    let x = _mm512_sub_ps(x, splat(origin_x));
-    let y = _mm512_sub_ps(y, splat(origin_y));
-    let z = _mm512_sub_ps(z, splat(origin_z));
+    let x = _mm512_sub_ps(x, splat(origin.x));
+    let y = _mm512_sub_ps(y, splat(origin.y));
+    let z = _mm512_sub_ps(z, splat(origin.z));
     let dot = |ax, ay, az, bx, by, bz| {
         _mm512_fmadd_ps(ax, bx, _mm512_fmadd_ps(ay, by, _mm512_mul_ps(az, bz)))
     };
-    let d = line.direction;
+    let d = direction;
     let rr = _mm512_mul_ps(r, r);
     let oo = dot(x, y, z, x, y, z);
     let b = dot(x, y, z, splat(d.x), splat(d.y), splat(d.z));
     let c = _mm512_fnmadd_ps(splat(SLACK), _mm512_add_ps(oo, rr), _mm512_sub_ps(oo, rr));
-    let discriminant = _mm512_fmsub_ps(b, b, _mm512_mul_ps(splat(line.a), c));
+    let discriminant = _mm512_fmsub_ps(b, b, _mm512_mul_ps(splat(a), c));
     // A number that is none is asked about, too.
     let mut found = _mm512_cmp_ps_mask::<_CMP_NLT_UQ>(discriminant, splat(Line::SMALLEST));
-    if is_bounded {
+    if let Some((line, end)) = bounded {
         let r = _mm512_abs_ps(r);
         let middle = _mm512_mul_ps(b, splat(line.inverse));
         let off = _mm512_mul_ps(_mm512_abs_ps(middle), splat(OFF));

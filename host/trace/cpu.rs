@@ -4,6 +4,7 @@ use rayon::prelude::*;
 use spherule_kernel::tree::{Node, work_in_tree};
 use spherule_kernel::{Hit, Ray, Rung, Sphere};
 
+use super::levels::Levels;
 use super::single::Single;
 use crate::scene::tree::{self, Acceleration, MIN_SPHERES};
 
@@ -15,6 +16,7 @@ const GRAIN: usize = 1 << 10;
 pub struct CpuTracer {
     spheres: Vec<Sphere>,
     nodes: Vec<Node>,
+    levels: Option<Levels>,
     /// For each sphere, its index as it was given; empty without a tree.
     order: Vec<u32>,
 }
@@ -26,12 +28,14 @@ impl CpuTracer {
         match tree::grow_still(spheres, acceleration.min_spheres(MIN_SPHERES)) {
             Some(tree) => Self {
                 spheres: tree.sort(spheres),
+                levels: Levels::of(&tree.nodes),
                 nodes: tree.nodes,
                 order: tree.order,
             },
             None => Self {
                 spheres: spheres.to_vec(),
                 nodes: Vec::new(),
+                levels: None,
                 order: Vec::new(),
             },
         }
@@ -40,7 +44,14 @@ impl CpuTracer {
     /// The memory that tracing takes, in bytes.
     #[must_use]
     pub fn bytes(&self) -> usize {
-        size_of_val(&self.spheres[..]) + size_of_val(&self.nodes[..])
+        let levels = self.levels.as_ref().map_or(0, Levels::bytes);
+        size_of_val(&self.spheres[..]) + size_of_val(&self.nodes[..]) + levels
+    }
+
+    /// What traces rays on this rung.
+    #[must_use]
+    pub fn single(&self, rung: Rung) -> Single<'_> {
+        Single::new(rung, &self.nodes, self.levels.as_ref())
     }
 
     /// The tree's nodes; none without one.
@@ -59,7 +70,7 @@ impl CpuTracer {
     /// long as `rays`.
     pub fn nearest(&self, rung: Rung, rays: &[Ray], hits: &mut Vec<Hit>) {
         hits.resize(rays.len(), Hit::NONE);
-        let single = Single::new(rung, &self.nodes);
+        let single = self.single(rung);
         let spheres = &self.spheres[..];
         hits.par_chunks_mut(GRAIN)
             .zip(rays.par_chunks(GRAIN))
@@ -76,7 +87,7 @@ impl CpuTracer {
     /// Whether each ray hits anything, 1 or 0. `occluded` gets as long as `rays`.
     pub fn occluded(&self, rung: Rung, rays: &[Ray], occluded: &mut Vec<u32>) {
         occluded.resize(rays.len(), 0);
-        let single = Single::new(rung, &self.nodes);
+        let single = self.single(rung);
         let spheres = &self.spheres[..];
         occluded
             .par_chunks_mut(GRAIN)

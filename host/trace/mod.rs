@@ -4,6 +4,7 @@
 //! | --- | --- |
 //! | [`cpu`] | [`CpuTracer`]: on every thread of this machine |
 //! | [`single`] | rays one by one on the CPU, several boxes and spheres side by side |
+//! | [`levels`] | [`Levels`](levels::Levels): boxes of sixteen boxes, for worlds that are not too large |
 //! | [`gpu`] | [`GpuTracer`]: on a GPU |
 
 #[cfg(target_arch = "x86_64")]
@@ -11,10 +12,13 @@ mod avx2;
 #[cfg(target_arch = "x86_64")]
 mod avx512;
 pub mod cpu;
-#[cfg(target_arch = "x86_64")]
-mod flat;
 pub mod gpu;
+pub mod levels;
 pub mod single;
+#[cfg(target_arch = "x86_64")]
+mod sixteen;
+#[cfg(target_arch = "x86_64")]
+mod stream;
 #[cfg(target_arch = "x86_64")]
 mod walk;
 

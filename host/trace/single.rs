@@ -4,8 +4,8 @@
 //! [`candidates`](spherule_kernel::candidates), whose slack covers every rung, and only what may be a hit is
 //! asked about on its rung; of the rungs that take long, only the nearest at the end, and what
 //! [`bounds`](spherule_kernel::bounds) leave open. With AVX2, which is looked for when the program runs, the eight boxes of a node
-//! are tested side by side, too; without it the kernel's walk does that. With AVX-512 a small tree is looked at without its
-//! inner nodes.
+//! are tested side by side, too; without it the kernel's walk does that. With AVX-512 rays in worlds that are not too
+//! large go through [`Levels`] instead, sixteen at a time.
 
 use glam::{Mat4, Vec4};
 use spherule_kernel::bounds::Line;
@@ -18,8 +18,9 @@ use spherule_kernel::{Effects, Hit, Ray, Rung, Sphere};
 
 #[cfg(target_arch = "x86_64")]
 use super::avx512::{self, Avx512};
+use super::levels::Levels;
 #[cfg(target_arch = "x86_64")]
-use super::flat::{self, Flat};
+use super::stream;
 #[cfg(target_arch = "x86_64")]
 use super::walk::{self, Features};
 
@@ -38,27 +39,24 @@ pub struct Single<'a> {
     /// That the machine has it.
     #[cfg(target_arch = "x86_64")]
     features: Option<Features>,
-    /// The tree's bottom, if it is small and the machine has the instructions for that.
+    /// The tree's boxes in levels, and the instructions for them.
     #[cfg(target_arch = "x86_64")]
-    flat: Option<(Avx512, Box<Flat>)>,
+    levels: Option<(Avx512, &'a Levels)>,
 }
 
 impl<'a> Single<'a> {
-    /// For rays on this rung. With nodes, spheres are in the order of their leaves.
+    /// For rays on this rung. With nodes, spheres are in the order of their leaves. Levels are those of the nodes.
     #[must_use]
-    pub fn new(rung: Rung, nodes: &'a [Node]) -> Self {
+    pub fn new(rung: Rung, nodes: &'a [Node], levels: Option<&'a Levels>) -> Self {
         fn on<const RUNG: u32>(sphere: Sphere, ray: &Ray) -> f32 {
             intersect(RUNG, sphere, ray)
         }
         #[cfg(target_arch = "x86_64")]
         let features = Features::detect();
         #[cfg(target_arch = "x86_64")]
-        let flat = match features {
-            Some(Features::Avx512(wide)) if nodes.len() > Node::ROOT as usize => {
-                Flat::of(nodes).map(|flat| (wide, Box::new(flat)))
-            }
-            _ => None,
-        };
+        let levels = Avx512::detect().zip(levels);
+        #[cfg(not(target_arch = "x86_64"))]
+        let _ = levels;
         Self {
             rung,
             intersect: match rung {
@@ -72,7 +70,7 @@ impl<'a> Single<'a> {
             #[cfg(target_arch = "x86_64")]
             features,
             #[cfg(target_arch = "x86_64")]
-            flat,
+            levels,
         }
     }
 
@@ -85,9 +83,11 @@ impl<'a> Single<'a> {
         mut put: impl FnMut(usize, Hit),
     ) {
         #[cfg(target_arch = "x86_64")]
-        if let (Some((wide, flat)), Some(spheres)) = (&self.flat, spheres.at_rest()) {
+        if let (Some((wide, levels)), Some(spheres)) = (self.levels, spheres.at_rest())
+            && (self.rung == Rung::Robust || levels.groups.len() <= 2)
+        {
             // SAFETY: the machine has AVX-512, as the proof says.
-            unsafe { flat::trace::<ANY>(*wide, flat, self, rays, spheres, put) };
+            unsafe { stream::trace::<ANY>(wide, levels, self, rays, spheres, put) };
             return;
         }
         #[cfg(target_arch = "x86_64")]
@@ -111,12 +111,11 @@ impl<'a> Single<'a> {
             return search.finish::<ANY>();
         }
         #[cfg(target_arch = "x86_64")]
-        if let (Some((wide, flat)), Some(spheres)) = (&self.flat, spheres.at_rest()) {
-            let mut found = Hit::NONE;
-            let ray = std::slice::from_ref(ray);
+        if let (Some((wide, levels)), Some(spheres)) = (self.levels, spheres.at_rest())
+            && levels.groups.len() <= 2
+        {
             // SAFETY: the machine has AVX-512, as the proof says.
-            unsafe { flat::trace::<ANY>(*wide, flat, self, ray, spheres, |_, hit| found = hit) };
-            return found;
+            return unsafe { stream::trace_one::<ANY>(wide, levels, self, ray, spheres) };
         }
         #[cfg(target_arch = "x86_64")]
         if let Some(features) = self.features {
@@ -307,7 +306,14 @@ impl Search {
             // SAFETY: the machine has AVX-512, as the proof says.
             let found = unsafe {
                 let some = spheres.get_unchecked(at as usize..end as usize);
-                avx512::sift(&self.line, end_here, self.is_bounded, some)
+                let bounded = self.is_bounded.then_some((&self.line, end_here));
+                let Line {
+                    origin,
+                    direction,
+                    a,
+                    ..
+                } = self.line;
+                avx512::sift(origin, direction, a, bounded, some)
             };
             self.ask::<ANY, [Sphere]>(spheres, at, found);
             if ANY & self.hit.is_some() {

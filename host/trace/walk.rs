@@ -381,7 +381,7 @@ pub(super) mod tests {
         ];
         for features in all.into_iter().flatten() {
             for rung in Rung::ALL {
-                let single = Single::new(rung, nodes);
+                let single = Single::new(rung, nodes, None);
                 let code = rung.to_u32();
                 let expected = |ray: &Ray| nearest_hit_in(code, ray, spheres, 0, u32::MAX);
                 let (mut count, mut hits) = (0, 0);

@@ -95,7 +95,7 @@ impl Line {
     pub const SMALLEST: f32 = -1e-36;
 
     /// Of a ray.
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn of(ray: &Ray) -> Self {
         let scale = power_of_two_under(ray.direction);

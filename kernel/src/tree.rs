@@ -225,7 +225,7 @@ pub struct Slabs {
 
 impl Slabs {
     /// Of a ray in a tree, which has a first node.
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn of(rung: u32, ray: &Ray, nodes: &[Node]) -> Self {
         let scale = power_of_two_under(ray.direction);

@@ -12,6 +12,7 @@ use super::{Prepared, Progress, Settings};
 use crate::error::{Error, Result};
 use crate::film;
 use crate::render::Timings;
+use crate::trace::levels::Levels;
 use crate::trace::single::Single;
 
 /// Rows in a band.
@@ -33,7 +34,7 @@ const STILL: u32 = Effects::ALL
     .to_bits();
 const ALL: u32 = Effects::ALL.to_bits();
 
-type Trace = fn(Rung, &Prepared, &PathLaunch, &mut [Accumulator]);
+type Trace = fn(Rung, &Prepared, Option<&Levels>, &PathLaunch, &mut [Accumulator]);
 
 /// Renders on every thread of the pool.
 ///
@@ -47,6 +48,7 @@ pub fn render(
 ) -> Result<(Vec<Accumulator>, Timings, Reached)> {
     let trace = trace_for(prepared.compiled, settings.rung);
     let size = prepared.launch.image_size;
+    let levels = Levels::of(&prepared.nodes);
     let mut accumulators = film::allocate::<Accumulator>(size.x, size.y)?;
     let started = Instant::now();
     let deadline = settings.time_limit.map(|limit| started + limit);
@@ -59,7 +61,13 @@ pub fn render(
             ..prepared.launch
         };
         let begun = Instant::now();
-        trace(settings.rung, prepared, &launch, &mut accumulators);
+        trace(
+            settings.rung,
+            prepared,
+            levels.as_ref(),
+            &launch,
+            &mut accumulators,
+        );
         let stop = budget.took(count, begun.elapsed(), || {
             Ok::<_, Error>(noise(&accumulators))
         })?;
@@ -106,6 +114,7 @@ fn trace_on<const RUNG: u32>(effects: Effects) -> Trace {
 fn trace<const EFFECTS: u32, const RUNG: u32>(
     rung: Rung,
     prepared: &Prepared,
+    levels: Option<&Levels>,
     launch: &PathLaunch,
     accumulators: &mut [Accumulator],
 ) {
@@ -117,7 +126,7 @@ fn trace<const EFFECTS: u32, const RUNG: u32>(
             .within(called),
         rung: RUNG,
         launch,
-        traversal: Single::new(rung, &prepared.nodes),
+        traversal: Single::new(rung, &prepared.nodes, levels),
         spheres: &world.spheres,
         velocities: &prepared.velocities,
         material_ids: &world.material_ids,

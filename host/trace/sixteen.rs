@@ -1,0 +1,222 @@
+//! [`Sixteen`]: rays side by side, and what stays the same of each from sphere to sphere.
+
+use std::arch::x86_64::*;
+
+use glam::Vec3;
+use spherule_kernel::bounds::Line;
+use spherule_kernel::tree::{Node, Slabs};
+use spherule_kernel::{Hit, Ray, Rung, Sphere};
+
+use super::avx512::{self, LANES};
+
+/// One value of each ray.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
+struct Lanes<T>([T; LANES]);
+
+impl Default for Lanes<f32> {
+    fn default() -> Self {
+        Self([0.0; LANES])
+    }
+}
+
+impl Default for Lanes<u32> {
+    fn default() -> Self {
+        Self([0; LANES])
+    }
+}
+
+impl Lanes<f32> {
+    #[inline]
+    #[target_feature(enable = "avx512f")]
+    fn load(&self) -> __m512 {
+        // SAFETY: sixteen floats on a boundary of 64 bytes.
+        unsafe { _mm512_load_ps(self.0.as_ptr()) }
+    }
+}
+
+/// Up to sixteen rays. What is behind the last of them is of no ray.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Sixteen {
+    /// As the rays have them.
+    origin: [Lanes<f32>; 3],
+    direction: [Lanes<f32>; 3],
+    t_min: Lanes<f32>,
+    end: Lanes<f32>,
+    /// The direction's squared length, and one over it.
+    squared: Lanes<f32>,
+    inverse_squared: Lanes<f32>,
+    slabs: ManySlabs,
+    /// [`Line::direction`] and [`Line::a`].
+    scaled: [Lanes<f32>; 3],
+    scaled_squared: Lanes<f32>,
+}
+
+/// What [`Slabs`] are of a ray, and where it ends, as they count it.
+#[derive(Clone, Copy)]
+pub(super) struct Planes {
+    pub(super) inverse: [f32; 3],
+    pub(super) near: [f32; 3],
+    pub(super) far: [f32; 3],
+    pub(super) near_rows: [u32; 3],
+    pub(super) end: f32,
+}
+
+impl Planes {
+    #[inline(always)]
+    pub(super) fn of(slabs: &Slabs, end: f32) -> Self {
+        Self {
+            inverse: slabs.inverse.to_array(),
+            near: slabs.near.to_array(),
+            far: slabs.far.to_array(),
+            near_rows: slabs.near_rows.to_array(),
+            end: end_of(slabs, end),
+        }
+    }
+}
+
+/// What is used of [`Slabs`].
+#[derive(Clone, Debug, Default)]
+struct ManySlabs {
+    inverse: [Lanes<f32>; 3],
+    near: [Lanes<f32>; 3],
+    far: [Lanes<f32>; 3],
+    near_rows: [Lanes<u32>; 3],
+    end: Lanes<f32>,
+}
+
+/// The end of a ray, as its planes count it; that of one that ends before it starts is zero.
+#[inline(always)]
+pub(super) fn end_of(slabs: &Slabs, t: f32) -> f32 {
+    Slabs::widened_end(t * slabs.unit - slabs.start).max(0.0)
+}
+
+impl Sixteen {
+    /// Takes the rays of a slice, sixteen at most.
+    #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
+    pub(super) fn take(&mut self, rung: Rung, rays: &[Ray], nodes: &[Node]) {
+        for (i, ray) in rays.iter().take(LANES).enumerate() {
+            for axis in 0..3 {
+                self.origin[axis].0[i] = ray.origin[axis];
+                self.direction[axis].0[i] = ray.direction[axis];
+            }
+            self.t_min.0[i] = ray.t_min;
+            self.end.0[i] = ray.t_max;
+        }
+        match rung {
+            Rung::Textbook => self.ready::<{ Rung::Textbook.to_u32() }>(nodes),
+            Rung::Robust => self.ready::<{ Rung::Robust.to_u32() }>(nodes),
+            // Boxes need not be wider for the others.
+            _ => self.ready::<{ Rung::Certified.to_u32() }>(nodes),
+        }
+    }
+
+    /// Loops over arrays become vector instructions.
+    #[inline(never)]
+    #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
+    fn ready<const RUNG: u32>(&mut self, nodes: &[Node]) {
+        let world = [nodes[0]];
+        for i in 0..LANES {
+            let at = |of: &[Lanes<f32>; 3]| Vec3::new(of[0].0[i], of[1].0[i], of[2].0[i]);
+            let ray = Ray {
+                origin: at(&self.origin),
+                t_min: self.t_min.0[i],
+                direction: at(&self.direction),
+                t_max: self.end.0[i],
+            };
+            let a = ray.direction.dot(ray.direction);
+            self.end.0[i] = ray.end();
+            self.squared.0[i] = a;
+            self.inverse_squared.0[i] = 1.0 / a;
+            let slabs = Slabs::of(RUNG, &ray, &world);
+            self.slabs.end.0[i] = end_of(&slabs, ray.end());
+            let line = Line::of(&ray);
+            self.scaled_squared.0[i] = line.a;
+            let put = |of: &mut [Lanes<f32>; 3], v: Vec3| {
+                (of[0].0[i], of[1].0[i], of[2].0[i]) = (v.x, v.y, v.z);
+            };
+            put(&mut self.slabs.inverse, slabs.inverse);
+            put(&mut self.slabs.near, slabs.near);
+            put(&mut self.slabs.far, slabs.far);
+            put(&mut self.scaled, line.direction);
+            let rows = slabs.near_rows;
+            self.slabs.near_rows[0].0[i] = rows.x;
+            self.slabs.near_rows[1].0[i] = rows.y;
+            self.slabs.near_rows[2].0[i] = rows.z;
+        }
+    }
+}
+
+impl Sixteen {
+    /// The planes of a ray.
+    #[inline(always)]
+    pub(super) fn planes(&self, ray: usize) -> Planes {
+        let ray = ray % LANES;
+        Planes {
+            inverse: self.slabs.inverse.each_ref().map(|of| of.0[ray]),
+            near: self.slabs.near.each_ref().map(|of| of.0[ray]),
+            far: self.slabs.far.each_ref().map(|of| of.0[ray]),
+            near_rows: self.slabs.near_rows.each_ref().map(|of| of.0[ray]),
+            end: self.slabs.end.0[ray],
+        }
+    }
+
+    /// Which of up to sixteen spheres a ray may hit, a bit each.
+    #[inline]
+    #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
+    pub(super) fn sift(&self, ray: usize, spheres: &[Sphere]) -> u32 {
+        let ray = ray % LANES;
+        let of = |lanes: &[Lanes<f32>; 3]| Vec3::from_array(lanes.each_ref().map(|of| of.0[ray]));
+        let a = self.scaled_squared.0[ray];
+        avx512::sift(of(&self.origin), of(&self.scaled), a, None, spheres)
+    }
+
+    /// Where each of sixteen pairs of a ray and a sphere meets on [`Rung::Robust`], [`Hit::NONE_T`] where it does not: the
+    /// kernel's operations in their order. Both are told by index.
+    #[inline]
+    #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
+    pub(super) fn robust(&self, rays: __m512i, spheres: &[Sphere], indices: __m512i) -> __m512 {
+        let of = |lanes: &Lanes<f32>| _mm512_permutexvar_ps(rays, lanes.load());
+        let at = _mm512_slli_epi32::<2>(indices);
+        let [cx, cy, cz, r] = [0, 1, 2, 3].map(|row| {
+            let at = _mm512_add_epi32(at, _mm512_set1_epi32(row));
+            // SAFETY: four floats a sphere, and the spheres are there.
+            unsafe { _mm512_i32gather_ps::<4>(at, spheres.as_ptr().cast()) }
+        });
+        let dot = |ax, ay, az, bx, by, bz| {
+            let xy = _mm512_add_ps(_mm512_mul_ps(ax, bx), _mm512_mul_ps(ay, by));
+            _mm512_add_ps(xy, _mm512_mul_ps(az, bz))
+        };
+        let [x, y, z] = self.direction.each_ref().map(of);
+        let [ox, oy, oz] = self.origin.each_ref().map(of);
+        let ox = _mm512_sub_ps(ox, cx);
+        let oy = _mm512_sub_ps(oy, cy);
+        let oz = _mm512_sub_ps(oz, cz);
+        let a = of(&self.squared);
+        let b = dot(ox, oy, oz, x, y, z);
+        let along = _mm512_mul_ps(b, of(&self.inverse_squared));
+        let foot_x = _mm512_sub_ps(ox, _mm512_mul_ps(x, along));
+        let foot_y = _mm512_sub_ps(oy, _mm512_mul_ps(y, along));
+        let foot_z = _mm512_sub_ps(oz, _mm512_mul_ps(z, along));
+        let rr = _mm512_mul_ps(r, r);
+        let squared = dot(foot_x, foot_y, foot_z, foot_x, foot_y, foot_z);
+        let discriminant = _mm512_sub_ps(rr, squared);
+        let c = _mm512_sub_ps(dot(ox, oy, oz, ox, oy, oz), rr);
+        let root = _mm512_sqrt_ps(_mm512_mul_ps(a, discriminant));
+        let size = _mm512_add_ps(_mm512_abs_ps(b), root);
+        let outer = _mm512_div_ps(size, a);
+        let inner = _mm512_div_ps(c, size);
+        let minus = |x| _mm512_xor_ps(x, _mm512_set1_ps(-0.0));
+        let towards = _mm512_cmp_ps_mask::<_CMP_LT_OQ>(b, _mm512_setzero_ps());
+        let near = _mm512_mask_mov_ps(minus(outer), towards, inner);
+        let far = _mm512_mask_mov_ps(minus(inner), towards, outer);
+        let t_min = of(&self.t_min);
+        let is_near = _mm512_cmp_ps_mask::<_CMP_GE_OQ>(near, t_min);
+        let t = _mm512_mask_mov_ps(far, is_near, near);
+        let hits = _mm512_cmp_ps_mask::<_CMP_GE_OQ>(t, t_min)
+            & _mm512_cmp_ps_mask::<_CMP_LT_OQ>(t, of(&self.end))
+            & _mm512_cmp_ps_mask::<_CMP_GE_OQ>(discriminant, _mm512_setzero_ps())
+            & _mm512_cmp_ps_mask::<_CMP_LE_OQ>(size, _mm512_set1_ps(f32::MAX));
+        _mm512_mask_mov_ps(_mm512_set1_ps(Hit::NONE_T), hits, t)
+    }
+}

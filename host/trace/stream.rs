@@ -1,0 +1,460 @@
+//! Sixteen rays at a time through [`Levels`], with AVX-512.
+//!
+//! Each step is done for all sixteen before the next: the boxes that they meet on a level, those on the level below, the
+//! spheres that may be hit, and what the rung says of them. A step is one loop over a list of pairs that the step before has
+//! written, without any decision in it: the processor has nothing to guess, and what one ray waits for does not hold up
+//! the others. That is worth more than to leave out what is behind the nearest hit, as long as rays do not meet
+//! too many boxes; those of rays that do go through the tree instead.
+
+use std::arch::x86_64::*;
+use std::cell::RefCell;
+use std::mem::MaybeUninit;
+
+use spherule_kernel::tree::Slabs;
+use spherule_kernel::{Hit, Ray, Rung, Sphere};
+
+use super::avx512::{Avx512, LANES};
+use super::levels::{Group, Levels};
+use super::single::Single;
+use super::sixteen::{Planes, Sixteen, end_of};
+use super::walk::{self, Features};
+
+/// The most boxes that sixteen rays may meet.
+const MOST: usize = 64 * LANES;
+/// The most boxes in two levels.
+const MOST_ALONE: usize = 1024;
+/// How many pairs of rays and spheres wait before they are asked about.
+const WAITING: usize = 1024;
+
+thread_local! {
+    static ROOM: RefCell<Room> = RefCell::default();
+}
+
+/// Lists that are kept for the next rays.
+#[derive(Default)]
+struct Room {
+    sixteen: Sixteen,
+    /// Boxes that rays meet, and those of the level below.
+    pairs: Vec<u32>,
+    below: Vec<u32>,
+    /// Spheres that rays may hit.
+    rays: Vec<u32>,
+    spheres: Vec<u32>,
+}
+
+/// A ray and a box in one number.
+const fn pair(ray: usize, index: usize) -> u32 {
+    (ray << Levels::INDEX_BITS | index) as u32
+}
+
+/// The ray and the box of a pair.
+const fn of_pair(pair: u32) -> (usize, usize) {
+    let index = pair & ((1 << Levels::INDEX_BITS) - 1);
+    ((pair >> Levels::INDEX_BITS) as usize, index as usize)
+}
+
+/// What each ray hits; `put` is told the ray's index.
+#[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
+pub(super) fn trace<const ANY: bool>(
+    wide: Avx512,
+    levels: &Levels,
+    single: &Single<'_>,
+    rays: &[Ray],
+    spheres: &[Sphere],
+    mut put: impl FnMut(usize, Hit),
+) {
+    let mut room = ROOM.take();
+    let (top, below) = levels.groups.split_first().expect("a level");
+    for (some, rays) in rays.chunks(LANES).enumerate() {
+        let mut put = |index: usize, hit: Hit| put(LANES * some + index, hit);
+        room.sixteen.take(single.rung, rays, single.nodes);
+        room.begin(top, rays.len());
+        for level in below {
+            room.descend(level);
+        }
+        if room.pairs.len() > MOST {
+            walk::trace::<ANY, _>(Features::Avx512(wide), single, rays, spheres, put);
+        } else if single.rung == Rung::Robust {
+            let nearest = room.ask(levels, spheres);
+            for index in 0..rays.len() {
+                put(index, nearest.hit(index));
+            }
+        } else {
+            let mut pairs = room.pairs.iter().peekable();
+            for (index, ray) in rays.iter().enumerate() {
+                let mut search = single.search(ray);
+                while let Some(pair) = pairs.next_if(|pair| of_pair(**pair).0 == index) {
+                    let (first, count) = levels.spheres[of_pair(*pair).1];
+                    search.test_wide::<ANY>(wide, spheres, first, count);
+                }
+                put(index, search.finish::<ANY>());
+            }
+        }
+    }
+    ROOM.set(room);
+}
+
+/// What one ray hits, in a world of two levels at most.
+///
+/// Alone a ray goes through boxes from the nearest on, and leaves out those behind what it has found.
+#[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
+pub(super) fn trace_one<const ANY: bool>(
+    wide: Avx512,
+    levels: &Levels,
+    single: &Single<'_>,
+    ray: &Ray,
+    spheres: &[Sphere],
+) -> Hit {
+    /// A key's bits that say which box.
+    const INDEX: i32 = MOST_ALONE as i32 - 1;
+    let slabs = Slabs::of(single.rung.to_u32(), ray, single.nodes);
+    let planes = Planes::of(&slabs, ray.end());
+    // Where a box is entered, as a float's bits, whose lowest say which box.
+    let mut keys = [const { MaybeUninit::<i32>::uninit() }; MOST_ALONE + LANES];
+    let mut count = 0;
+    let mut enter = |group: &Group, first: usize| {
+        let (is_met, enters) = group.meets(&planes);
+        // (enters & !INDEX) | index
+        let found = _mm512_ternarylogic_epi32::<0b1101_1000>(
+            _mm512_castps_si512(enters),
+            _mm512_or_epi32(_mm512_set1_epi32(first as i32), lanes()),
+            _mm512_set1_epi32(INDEX),
+        );
+        // SAFETY: there is room for sixteen behind the most that there may be.
+        unsafe {
+            let to = keys.as_mut_ptr().add(count);
+            _mm512_storeu_epi32(to.cast(), _mm512_maskz_compress_epi32(is_met, found));
+        }
+        count += is_met.count_ones() as usize;
+    };
+    if let [top, bottom] = &levels.groups[..] {
+        for (at, group) in top.iter().enumerate() {
+            let (mut met, _) = group.meets(&planes);
+            while met != 0 {
+                let index = LANES * at + met.trailing_zeros() as usize;
+                met &= met - 1;
+                enter(&bottom[index], LANES * index);
+            }
+        }
+    } else {
+        for (index, group) in levels.groups[0].iter().enumerate() {
+            enter(group, LANES * index);
+        }
+    }
+    // SAFETY: as many were written.
+    let keys = unsafe { keys[..count].assume_init_mut() };
+    let mut search = single.search(ray);
+    let mut last_key = i32::MAX;
+    for done in 0..keys.len() {
+        // The nearest of the others to its place.
+        for other in done + 1..keys.len() {
+            let (a, b) = (keys[done], keys[other]);
+            (keys[done], keys[other]) = (a.min(b), a.max(b));
+        }
+        let key = keys[done];
+        if key > last_key {
+            break;
+        }
+        let (first, count) = levels.spheres[(key & INDEX) as usize];
+        search.test_wide::<ANY>(wide, spheres, first, count);
+        if ANY && search.hit.is_some() {
+            break;
+        }
+        last_key = end_of(&slabs, search.ray.t_max).to_bits().cast_signed() | INDEX;
+    }
+    search.finish::<ANY>()
+}
+
+impl Room {
+    /// Finds the boxes on top that rays meet.
+    #[inline]
+    #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
+    fn begin(&mut self, top: &[Group], count: usize) {
+        let mut pairs = Writer::new(&mut self.pairs, LANES * top.len() * count);
+        for ray in 0..count {
+            for (index, group) in top.iter().enumerate() {
+                let (is_met, _) = group.meets(&self.sixteen.planes(ray));
+                let first = _mm512_set1_epi32(pair(ray, LANES * index).cast_signed());
+                // SAFETY: sixteen of each group at most.
+                unsafe { pairs.push(is_met, _mm512_or_epi32(first, lanes())) };
+            }
+        }
+        pairs.finish();
+    }
+
+    /// Finds the boxes of a level that rays meet in the groups that they are paired with.
+    #[inline]
+    #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
+    fn descend(&mut self, level: &[Group]) {
+        let mut below = Writer::new(&mut self.below, LANES * self.pairs.len());
+        for met in &self.pairs {
+            let (ray, index) = of_pair(*met);
+            // SAFETY: a group of those on top, or that of a box of the level above, which each have one here.
+            let group = unsafe { level.get_unchecked(index) };
+            let (is_met, _) = group.meets(&self.sixteen.planes(ray));
+            let first = _mm512_set1_epi32(pair(ray, LANES * index).cast_signed());
+            // SAFETY: sixteen of each pair at most.
+            unsafe { below.push(is_met, _mm512_or_epi32(first, lanes())) };
+        }
+        below.finish();
+        std::mem::swap(&mut self.pairs, &mut self.below);
+    }
+
+    /// Finds what rays hit of the spheres in the boxes that they are paired with.
+    #[inline]
+    #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
+    fn ask(&mut self, levels: &Levels, spheres: &[Sphere]) -> Nearest {
+        let mut nearest = Nearest([i64::MAX; LANES]);
+        let pairs = &self.pairs[..];
+        // As many boxes as there are certainly room for.
+        for some in pairs.chunks(WAITING / LANES) {
+            let mut rays = Writer::new(&mut self.rays, WAITING);
+            let mut indices = Writer::new(&mut self.spheres, WAITING);
+            for met in some {
+                let (ray, index) = of_pair(*met);
+                // SAFETY: a box at the bottom, whose spheres are there.
+                let (first, some) = unsafe {
+                    let (first, count) = *levels.spheres.get_unchecked(index);
+                    let end = first as usize + count as usize;
+                    (first, spheres.get_unchecked(first as usize..end))
+                };
+                let found = self.sixteen.sift(ray, some) as __mmask16;
+                let first = _mm512_set1_epi32(first.cast_signed());
+                // SAFETY: sixteen of each box at most.
+                unsafe {
+                    indices.push(found, _mm512_add_epi32(first, lanes()));
+                    rays.push(found, _mm512_set1_epi32(ray as i32));
+                }
+            }
+            rays.finish();
+            indices.finish();
+            nearest.ask(&self.sixteen, &self.rays, &self.spheres, spheres);
+        }
+        nearest
+    }
+}
+
+#[inline]
+#[target_feature(enable = "avx512f")]
+fn lanes() -> __m512i {
+    _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15)
+}
+
+/// What writes a list anew.
+struct Writer<'a> {
+    list: &'a mut Vec<u32>,
+    to: *mut u32,
+    length: usize,
+}
+
+impl<'a> Writer<'a> {
+    /// Of a list that will have as many numbers at most.
+    #[inline(always)]
+    fn new(list: &'a mut Vec<u32>, most: usize) -> Self {
+        list.clear();
+        list.reserve(most + LANES);
+        Self {
+            to: list.as_mut_ptr(),
+            list,
+            length: 0,
+        }
+    }
+
+    /// Adds those of sixteen values that are chosen.
+    ///
+    /// # Safety
+    ///
+    /// There must be room for them.
+    #[inline]
+    #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
+    unsafe fn push(&mut self, chosen: __mmask16, values: __m512i) {
+        // SAFETY: there is room for sixteen behind what there is room for.
+        unsafe {
+            let to = self.to.add(self.length);
+            _mm512_storeu_epi32(to.cast(), _mm512_maskz_compress_epi32(chosen, values));
+        }
+        self.length += chosen.count_ones() as usize;
+    }
+
+    #[inline(always)]
+    fn finish(self) {
+        // SAFETY: so many were written.
+        unsafe { self.list.set_len(self.length) };
+    }
+}
+
+/// Sixteen numbers of 64 bits of their upper and lower halves.
+#[inline]
+#[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
+fn joined(upper: __m512i, lower: __m512i) -> (__m512i, __m512i) {
+    let join = |upper: __m256i, lower: __m256i| {
+        let upper = _mm512_slli_epi64::<32>(_mm512_cvtepu32_epi64(upper));
+        _mm512_or_epi64(upper, _mm512_cvtepu32_epi64(lower))
+    };
+    (
+        join(_mm512_castsi512_si256(upper), _mm512_castsi512_si256(lower)),
+        join(
+            _mm512_extracti64x4_epi64::<1>(upper),
+            _mm512_extracti64x4_epi64::<1>(lower),
+        ),
+    )
+}
+
+impl Group {
+    /// Which boxes a ray meets, a bit each, and where it enters them.
+    #[inline]
+    #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
+    fn meets(&self, planes: &Planes) -> (__mmask16, __m512) {
+        let splat = |value: f32| _mm512_set1_ps(value);
+        let rows = planes.near_rows.map(|row| row as usize);
+        let side = |row: usize| {
+            // SAFETY: near rows are 0 or 3, 1 or 4, 2 or 5, and far ones the others.
+            let sides = unsafe { self.0.get_unchecked(row) };
+            // SAFETY: sixteen floats on a boundary of 64 bytes.
+            unsafe { _mm512_load_ps(sides.as_ptr()) }
+        };
+        let enter = |axis: usize| {
+            let (inverse, near) = (splat(planes.inverse[axis]), splat(planes.near[axis]));
+            _mm512_fmadd_ps(side(rows[axis]), inverse, near)
+        };
+        let leave = |axis: usize| {
+            let row = 2 * axis + 3 - rows[axis];
+            let (inverse, far) = (splat(planes.inverse[axis]), splat(planes.far[axis]));
+            _mm512_fmadd_ps(side(row), inverse, far)
+        };
+        let enters = _mm512_max_ps(
+            _mm512_max_ps(enter(0), enter(1)),
+            _mm512_max_ps(enter(2), _mm512_setzero_ps()),
+        );
+        let leaves = _mm512_min_ps(
+            _mm512_min_ps(leave(0), leave(1)),
+            _mm512_min_ps(leave(2), splat(planes.end)),
+        );
+        let is_met = _mm512_cmp_ps_mask::<_CMP_LE_OQ>(enters, leaves);
+        (is_met, enters)
+    }
+}
+
+/// The nearest hit of each ray: where, as a whole number that is larger where the float is, in the upper half, and the
+/// sphere in the lower.
+struct Nearest([i64; LANES]);
+
+impl Nearest {
+    /// Asks about pairs of rays and spheres.
+    #[inline]
+    #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
+    fn ask(&mut self, sixteen: &Sixteen, rays: &[u32], indices: &[u32], spheres: &[Sphere]) {
+        for (rays, indices) in rays.chunks(LANES).zip(indices.chunks(LANES)) {
+            let there = _bzhi_u32(0xffff, rays.len() as u32) as __mmask16;
+            // SAFETY: only those that there are, are read.
+            let (some_rays, some_indices) = unsafe {
+                (
+                    _mm512_maskz_loadu_epi32(there, rays.as_ptr().cast()),
+                    _mm512_maskz_loadu_epi32(there, indices.as_ptr().cast()),
+                )
+            };
+            let t = sixteen.robust(some_rays, spheres, some_indices);
+            // Of two zeros one.
+            let t = _mm512_add_ps(t, _mm512_setzero_ps());
+            let hits = _mm512_mask_cmp_ps_mask::<_CMP_LT_OQ>(there, t, _mm512_set1_ps(Hit::NONE_T));
+            let bits = _mm512_castps_si512(t);
+            let sign = _mm512_srli_epi32::<1>(_mm512_srai_epi32::<31>(bits));
+            let (first, second) = joined(_mm512_xor_epi32(bits, sign), some_indices);
+            let none = _mm512_set1_epi64(i64::MAX);
+            let first = _mm512_mask_mov_epi64(none, hits as __mmask8, first);
+            let second = _mm512_mask_mov_epi64(none, (hits >> 8) as __mmask8, second);
+            let (mut found, mut of) = ([0; LANES], [0_u32; LANES]);
+            // SAFETY: room for sixteen, for eight and for eight.
+            unsafe {
+                _mm512_storeu_epi32(of.as_mut_ptr().cast(), some_rays);
+                _mm512_storeu_epi64(found.as_mut_ptr(), first);
+                _mm512_storeu_epi64(found.as_mut_ptr().add(8), second);
+            }
+            // What is not there has not found anything.
+            for i in 0..LANES {
+                let nearest = &mut self.0[of[i] as usize % LANES];
+                *nearest = found[i].min(*nearest);
+            }
+        }
+    }
+
+    #[inline]
+    fn hit(&self, ray: usize) -> Hit {
+        let key = self.0[ray];
+        if key == i64::MAX {
+            return Hit::NONE;
+        }
+        let ordered = (key >> 32) as i32;
+        let bits = ordered ^ ((ordered >> 31).cast_unsigned() >> 1).cast_signed();
+        Hit {
+            t: f32::from_bits(bits.cast_unsigned()),
+            sphere: key as u32,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+    use spherule_kernel::Effects;
+    use spherule_kernel::nearest::{MovingSpheres, nearest_hit_in};
+    use spherule_kernel::traversal::Traversal;
+
+    use super::super::walk::tests::{rays, world};
+    use super::*;
+    use crate::accuracy::random::Random;
+    use crate::scene::tree::grow_still;
+
+    /// Each ray finds what testing every sphere finds, with others and alone, on every rung: in worlds of one box and of many
+    /// levels, and where all spheres are in the same place, so that there are too many boxes.
+    #[test]
+    fn streams_find_what_testing_every_sphere_finds() {
+        if Avx512::detect().is_none() {
+            return;
+        }
+        let mut random = Random::new(11);
+        let heap = vec![Sphere::new(Vec3::new(0.1, 0.2, -0.3), 0.7); 2000];
+        let mut worlds = vec![(heap, true)];
+        for count in [1, 7, 40, 500, 3000, 20_000] {
+            worlds.push((world(&mut random, count), false));
+        }
+        for (spheres, is_heap) in worlds {
+            let tree = grow_still(&spheres, 1).expect("a tree");
+            let spheres = tree.sort(&spheres);
+            let levels = Levels::of(&tree.nodes).expect("levels");
+            assert!(!is_heap || levels.spheres.len() * LANES > MOST);
+            let rays = rays(&mut random);
+            let moving = MovingSpheres {
+                spheres: &spheres,
+                velocities: &[],
+                time: 0.0,
+                effects: Effects::default(),
+            };
+            let name = format!("{} spheres, a heap: {is_heap}", spheres.len());
+            for rung in Rung::ALL {
+                let single = Single::new(rung, &tree.nodes, Some(&levels));
+                let code = rung.to_u32();
+                let mut found = vec![(Hit::NONE, Hit::NONE); rays.len()];
+                single.trace::<false, _>(&rays, &spheres[..], |index, hit| found[index].0 = hit);
+                single.trace::<true, _>(&rays, &spheres[..], |index, hit| found[index].1 = hit);
+                for (ray, (nearest, any)) in rays.iter().zip(&found) {
+                    let expected = nearest_hit_in(code, ray, &spheres[..], 0, u32::MAX);
+                    assert_eq!(*nearest, expected, "{name}, {rung:?}, {ray:?}");
+                    let alone = single.nearest_hit(ray, &moving);
+                    assert_eq!(alone, expected, "{name}, {rung:?}, alone {ray:?}");
+                    let is_occluded = expected.is_some();
+                    assert_eq!(any.is_some(), is_occluded, "{name}, {rung:?}, {ray:?}");
+                    let alone = single.is_occluded(ray, &moving);
+                    assert_eq!(alone, is_occluded, "{name}, {rung:?}, alone {ray:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn large_worlds_have_no_levels() {
+        let mut random = Random::new(12);
+        let tree = grow_still(&world(&mut random, 300_000), 1).expect("a tree");
+        assert!(Levels::of(&tree.nodes).is_none());
+    }
+}
