@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 use serde::Serialize;
 use spherule_kernel::{Hit, Pixel, Rung, Shading};
 
+use super::limit::Limit;
 use super::rays::{Kind, RaySets};
 use crate::device::Device;
 use crate::error::Result;
@@ -80,6 +81,8 @@ pub struct Speed {
     /// Spheres that a ray was tested against, on average.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub spheres_per_ray: Option<f64>,
+    /// What part this is of the rays that [`Limit`] allows.
+    pub share_of_limit: f64,
 }
 
 impl Speed {
@@ -93,12 +96,13 @@ impl Speed {
             mrays_per_s: rays as f64 / seconds.max(1e-12) * 1e-6,
             nodes_per_ray: None,
             spheres_per_ray: None,
+            share_of_limit: 0.0,
         }
     }
 }
 
 /// How long a GPU is kept busy before anything is timed.
-const WARM_UP: Duration = Duration::from_secs(2);
+pub(super) const WARM_UP: Duration = Duration::from_secs(2);
 
 /// The median, and half of the range.
 fn median(times: &mut [f64]) -> (f64, f64) {
@@ -120,7 +124,7 @@ pub struct Plan {
     pub rounds: usize,
 }
 
-/// Measures `scene` on `device`.
+/// Measures `scene` on `device`, which has this limit.
 ///
 /// # Errors
 ///
@@ -131,6 +135,7 @@ pub fn measure(
     scene: &Scene,
     reach: f32,
     plan: Plan,
+    limit: &Limit,
 ) -> Result<Measured> {
     let spheres = &scene.world.spheres;
     let mut builds = Vec::new();
@@ -160,9 +165,11 @@ pub fn measure(
             on_gpu(gpu, &tracer, scene, &sets, plan)?
         }
     };
-    for (speed, work) in speeds.iter_mut().zip(work) {
+    for ((speed, work), kind) in speeds.iter_mut().zip(work).zip(Kind::ALL) {
         speed.nodes_per_ray = work.map(|(nodes, _)| nodes);
         speed.spheres_per_ray = work.map(|(_, spheres)| spheres);
+        let (nodes, spheres) = work.unwrap_or((0.0, spheres.len() as f64));
+        speed.share_of_limit = speed.mrays_per_s * 1e6 / limit.rays_per_s(kind, nodes, spheres);
     }
     let [primary, shadow, ambient, incoherent] = speeds;
     Ok(Measured {

@@ -7,6 +7,7 @@ use serde::Serialize;
 use super::args::BenchArguments;
 use super::{note, print};
 use crate::bench::export::export;
+use crate::bench::limit::Limit;
 use crate::bench::measure::{Measured, Plan, Speed, measure};
 use crate::bench::rays::RaySets;
 use crate::bench::scenes::{self, BenchScene};
@@ -21,6 +22,7 @@ use spherule_kernel::Rung;
 #[derive(Serialize)]
 struct Report<'a> {
     device: String,
+    limit: Limit,
     scenes: &'a [Measured],
 }
 
@@ -57,17 +59,24 @@ pub(super) fn run(arguments: &BenchArguments) -> Result<ExitCode> {
     // Numbers that a program reads stand alone.
     let to_stdout = arguments.json.as_deref() == Some("-".as_ref());
     let show = |text: &str| if to_stdout { Ok(()) } else { print(text) };
-    show(&head(size.width, size.height, plan))?;
+    let limit = Limit::of(&device)?;
+    show(&format!(
+        "at most {:.0} · 10⁹ operations and {:.0} · 10⁹ bytes a second\n{}",
+        limit.operations_per_s * 1e-9,
+        limit.bytes_per_s * 1e-9,
+        head(size.width, size.height, plan)
+    ))?;
     let mut all = Vec::new();
     for name in &names {
         let (scene, reach) = scenes::load(name, size.width, size.height)?;
-        let measured = measure(&device, name, &scene, reach, plan)?;
+        let measured = measure(&device, name, &scene, reach, plan, &limit)?;
         show(&row(&measured))?;
         all.push(measured);
     }
     if let Some(path) = &arguments.json {
         let report = Report {
             device: device.name(),
+            limit,
             scenes: &all,
         };
         let text = serde_json::to_string_pretty(&report).unwrap_or_default() + "\n";
@@ -133,8 +142,8 @@ fn compare(arguments: &BenchArguments, device: &Device, names: &[String]) -> Res
 
 fn head(width: u32, height: u32, plan: Plan) -> String {
     format!(
-        "{width} x {height}, precision {}, medians of {} rounds; Mrays/s of each kind, half of the range in per cent\n\
-         {:<12} {:>9} {:>5}  {:>15} {:>15} {:>15} {:>15}  {:>13} {:>8}\n",
+        "{width} x {height}, precision {}, medians of {} rounds; Mrays/s of each kind, half of the range in per cent, share of the limit\n\
+         {:<12} {:>9} {:>5}  {:>20} {:>20} {:>20} {:>20}  {:>10} {:>6}\n",
         plan.rung.name(),
         plan.rounds,
         "scene",
@@ -154,7 +163,12 @@ fn row(measured: &Measured) -> String {
         if speed.rays == 0 {
             "-".to_owned()
         } else {
-            format!("{:.1} ±{:>2.0}%", speed.mrays_per_s, 100.0 * speed.spread)
+            format!(
+                "{:.1} ±{:>2.0}% {:.2}",
+                speed.mrays_per_s,
+                100.0 * speed.spread,
+                speed.share_of_limit
+            )
         }
     };
     let of = &measured.rays;
@@ -164,7 +178,7 @@ fn row(measured: &Measured) -> String {
         "-".into()
     };
     format!(
-        "{:<12} {:>9} {:>5}  {:>15} {:>15} {:>15} {:>15}  {build:>13} {:>8.1}\n",
+        "{:<12} {:>9} {:>5}  {:>20} {:>20} {:>20} {:>20}  {build:>10} {:>6.1}\n",
         measured.scene,
         measured.spheres,
         if measured.has_tree { "yes" } else { "no" },

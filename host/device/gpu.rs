@@ -214,6 +214,13 @@ impl Gpu {
         self.device.limits()
     }
 
+    /// Row upon row of workgroups, where they are more than fit one.
+    #[must_use]
+    pub fn rows_of(&self, workgroups: u32) -> [u32; 3] {
+        let row = self.limits().max_compute_workgroups_per_dimension.max(1);
+        [workgroups.min(row), workgroups.div_ceil(row), 1]
+    }
+
     /// Gives the device up: every later call fails with [`Error::DeviceLost`].
     pub fn destroy(&self) {
         self.device.destroy();

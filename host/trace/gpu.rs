@@ -168,11 +168,8 @@ impl<'a> GpuTracer<'a> {
                 vec![rays, spheres, output]
             }
         };
-        // Row upon row of workgroups, where they are more than fit one.
         let [groups, ..] = kernel.workgroups_for([batch.rays.len() as u32, 1, 1]);
-        let row = self.gpu.limits().max_compute_workgroups_per_dimension;
-        let rows = groups.div_ceil(row.max(1));
-        let groups = [groups.min(row), rows, 1];
+        let groups = self.gpu.rows_of(groups);
         Ok(self.gpu.launch(&kernel, &bindings, groups)?.best())
     }
 }

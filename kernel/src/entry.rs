@@ -19,6 +19,7 @@ use crate::nearest::{is_occluded, nearest_hit_in};
 use crate::optics::{Fresnel, Incidence};
 use crate::precision::intersect;
 use crate::shading::shade;
+use crate::throughput::products;
 use crate::traversal::OneByOne;
 use crate::tree::{Node, is_occluded_in_tree, nearest_hit_in_tree};
 use crate::walk::{Walk, walk_inside};
@@ -526,5 +527,33 @@ pub fn measure_wide_arithmetic(
     let index = id.x as usize;
     if index < operands.len() && index < outcomes.len() {
         outcomes[index] = sing_wide(operands[index]);
+    }
+}
+
+/// Multiplies, and does nothing else. What each thread needs is a factor, and how many rounds.
+#[spirv(compute(threads(64), entry_point_name = "measure_multiplications"))]
+pub fn measure_multiplications(
+    #[spirv(global_invocation_id)] id: UVec3,
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 0)] factor_and_rounds: &[f32],
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 1)] sums: &mut [f32],
+) {
+    let index = id.x as usize;
+    if index < sums.len() && factor_and_rounds.len() >= 2 {
+        let rounds = factor_and_rounds[1] as u32;
+        sums[index] = products(index as f32, factor_and_rounds[0], rounds);
+    }
+}
+
+/// Copies, and does nothing else.
+#[spirv(compute(threads(64), entry_point_name = "measure_copying"))]
+pub fn measure_copying(
+    #[spirv(global_invocation_id)] id: UVec3,
+    #[spirv(num_workgroups)] groups: UVec3,
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 0)] from: &[Vec4],
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 1)] to: &mut [Vec4],
+) {
+    let index = (id.y * groups.x * 64 + id.x) as usize;
+    if index < from.len() && index < to.len() {
+        to[index] = from[index];
     }
 }

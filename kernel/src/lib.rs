@@ -31,6 +31,7 @@
 //! | [`integrate`] | light paths: what a pixel sees by all effects |
 //! | [`film`] | what a launch is told, what it writes |
 //! | [`canary`] | what a device does to the arithmetic that the ladder needs |
+//! | [`throughput`] | what a machine does at most, for `spherule bench` |
 //! | [`walk`] | a light path inside a glass sphere, for the hard cases |
 //! | [`layout`] | sizes and offsets of the shared types, as numbers |
 //! | `entry` | the `#[spirv]` entry points, behind the feature `entry-points` |
@@ -76,6 +77,7 @@ pub mod sphere;
 #[cfg(not(target_arch = "spirv"))]
 pub mod spirv;
 pub mod surface;
+pub mod throughput;
 pub mod traversal;
 pub mod tree;
 pub mod walk;

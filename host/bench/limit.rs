@@ -1,0 +1,177 @@
+//! [`Limit`]: what a device does at most, measured, and how much of that rays use.
+//!
+//! A ray must at least be tested against the boxes and the spheres that it meets on its way through the tree, or against
+//! every sphere in a world without one, and be read and what it finds be written. The limit is what would be left if the
+//! device did nothing else: no waiting, no sorting, no lane without work, and data that are at hand.
+//!
+//! Packets and tiles share tests among rays, so that they may come close to it or pass it.
+
+use std::hint::black_box;
+use std::time::{Duration, Instant};
+
+use glam::Vec4;
+use multiversion::multiversion;
+use rayon::prelude::*;
+use serde::Serialize;
+use spherule_kernel::throughput::MULTIPLICATIONS;
+use spherule_kernel::tree::Node;
+use spherule_kernel::{Hit, Pixel, Ray};
+
+use super::measure::WARM_UP;
+use super::rays::Kind;
+use crate::device::{Access, Device, Gpu};
+use crate::error::Result;
+use crate::kernel_module;
+
+/// Operations of a test. A box: six multiply-adds, six comparisons for the largest and the smallest, one of these two. A
+/// sphere, by its discriminant: three differences, three products for each of o·d and o·o, one for c, two for the
+/// discriminant, one comparison.
+const OPERATIONS: f64 = 13.0;
+/// How often each is measured; the fastest counts.
+const ROUNDS: usize = 5;
+/// How long a launch takes at least, for its ends not to count.
+const LONG: Duration = Duration::from_millis(5);
+
+/// What a device does at most.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Limit {
+    /// Multiplications of 32-bit floats a second; sums, multiply-adds and comparisons take as long.
+    pub operations_per_s: f64,
+    /// Bytes read and written a second, in large arrays.
+    pub bytes_per_s: f64,
+}
+
+impl Limit {
+    /// Measures a device.
+    ///
+    /// # Errors
+    ///
+    /// The device's errors.
+    pub fn of(device: &Device) -> Result<Self> {
+        match device {
+            Device::Cpu => Ok(Self {
+                operations_per_s: multiply_on_cpu(),
+                bytes_per_s: copy_on_cpu(),
+            }),
+            Device::Gpu(gpu) => Ok(Self {
+                operations_per_s: multiply_on_gpu(gpu)?,
+                bytes_per_s: copy_on_gpu(gpu)?,
+            }),
+        }
+    }
+
+    /// The most rays a second of a kind that meet so many nodes and spheres each.
+    #[must_use]
+    pub fn rays_per_s(&self, kind: Kind, nodes: f64, spheres: f64) -> f64 {
+        let tests = nodes * Node::WIDTH as f64 + spheres;
+        let bytes = match kind {
+            Kind::Primary => size_of::<Pixel>(),
+            Kind::Shadow | Kind::Ambient => size_of::<Ray>() + size_of::<u32>(),
+            Kind::Incoherent => size_of::<Ray>() + size_of::<Hit>(),
+        };
+        let seconds =
+            (tests * OPERATIONS / self.operations_per_s).max(bytes as f64 / self.bytes_per_s);
+        1.0 / seconds
+    }
+}
+
+/// The largest of what some rounds tell.
+fn fastest(mut round: impl FnMut() -> Result<f64>) -> Result<f64> {
+    (0..ROUNDS).try_fold(0.0, |fastest: f64, _| Ok(fastest.max(round()?)))
+}
+
+/// Products that do not wait for each other, `rounds` factors each.
+#[multiversion(targets(
+    "x86_64+avx512f+avx512vl+avx512bw+avx512dq+avx2+fma",
+    "x86_64+avx2+fma",
+    "aarch64+neon"
+))]
+fn products(factor: f32, rounds: u32) -> f32 {
+    let mut products = [[1.0_f32; 16]; PRODUCTS];
+    for _ in 0..rounds {
+        for lanes in &mut products {
+            for lane in lanes {
+                *lane *= factor;
+            }
+        }
+    }
+    products.as_flattened().iter().sum()
+}
+
+/// As many as hide how long a multiplication takes, and fit the registers.
+const PRODUCTS: usize = 10;
+
+fn multiply_on_cpu() -> f64 {
+    const FACTORS: u32 = 2_000_000;
+    let mut most = 0.0_f64;
+    for _ in 0..ROUNDS {
+        let started = Instant::now();
+        let threads = rayon::broadcast(|_| black_box(products(black_box(0.999_999_9), FACTORS)));
+        let done = threads.len() as f64 * f64::from(FACTORS) * (16 * PRODUCTS) as f64;
+        most = most.max(done / started.elapsed().as_secs_f64());
+    }
+    most
+}
+
+fn copy_on_cpu() -> f64 {
+    const WORDS: usize = 1 << 25;
+    const PIECE: usize = 1 << 16;
+    let from = vec![1_u32; WORDS];
+    let mut to = vec![2_u32; WORDS];
+    let mut most = 0.0_f64;
+    for _ in 0..ROUNDS {
+        let started = Instant::now();
+        to.par_chunks_mut(PIECE)
+            .zip(from.par_chunks(PIECE))
+            .for_each(|(to, from)| to.copy_from_slice(from));
+        black_box(&to);
+        let bytes = (size_of_val(&from[..]) + size_of_val(&to[..])) as f64;
+        most = most.max(bytes / started.elapsed().as_secs_f64());
+    }
+    most
+}
+
+fn multiply_on_gpu(gpu: &Gpu) -> Result<f64> {
+    let access = [Access::Read, Access::ReadWrite];
+    let kernel = gpu.kernel(&kernel_module::f32()?, "measure_multiplications", &access)?;
+    let threads = if gpu.is_software() { 1 << 12 } else { 1 << 20 };
+    let sums = gpu.zeroed::<f32>("sums", threads as usize)?;
+    let groups = kernel.workgroups_for([threads, 1, 1]);
+    // As many rounds as take long enough, and no driver's watchdog ends.
+    let mut rounds = 16;
+    loop {
+        let parameters = gpu.upload("factor and rounds", &[0.999_999_9, rounds as f32])?;
+        let bindings = [parameters.binding(), sums.binding()];
+        let took = gpu.launch(&kernel, &bindings, groups)?.best();
+        if took < LONG && rounds < 1 << 20 {
+            rounds *= 2;
+            continue;
+        }
+        // One that was idle is slow at first.
+        let started = Instant::now();
+        while !gpu.is_software() && started.elapsed() < WARM_UP {
+            gpu.launch(&kernel, &bindings, groups)?;
+        }
+        let done = f64::from(threads) * f64::from(rounds) * f64::from(MULTIPLICATIONS);
+        return fastest(|| {
+            let took = gpu.launch(&kernel, &bindings, groups)?.best();
+            Ok(done / took.as_secs_f64().max(f64::MIN_POSITIVE))
+        });
+    }
+}
+
+fn copy_on_gpu(gpu: &Gpu) -> Result<f64> {
+    let access = [Access::Read, Access::ReadWrite];
+    let kernel = gpu.kernel(&kernel_module::f32()?, "measure_copying", &access)?;
+    let most = gpu.limits().max_storage_buffer_binding_size as usize;
+    let count = (most / size_of::<Vec4>()).min(1 << 24);
+    let from = gpu.zeroed::<Vec4>("copied from", count)?;
+    let to = gpu.zeroed::<Vec4>("copied to", count)?;
+    let bindings = [from.binding(), to.binding()];
+    let groups = gpu.rows_of(kernel.workgroups_for([count as u32, 1, 1])[0]);
+    let bytes = (2 * count * size_of::<Vec4>()) as f64;
+    fastest(|| {
+        let took = gpu.launch(&kernel, &bindings, groups)?.best();
+        Ok(bytes / took.as_secs_f64().max(f64::MIN_POSITIVE))
+    })
+}
