@@ -7,6 +7,7 @@ use spherule::accuracy::oracle::Intersection;
 use spherule::accuracy::ulp;
 use spherule::kernel::bounds::Line;
 use spherule::kernel::cone::{Cone, Row};
+use spherule::kernel::frustum::Frustum;
 use spherule::kernel::glam::{Vec2, Vec4};
 use spherule::kernel::precision::intersect;
 use spherule::kernel::{Camera, Hit, Ray, Rung, Sphere};
@@ -161,6 +162,27 @@ proptest! {
         // Beyond the silhouette by a fifth, from outside, as large as a hundredth of what is seen.
         if is_square && off > 1.2 && o.length() > 1.5 * r && r > 0.01 * o.length() && o.length() > 1e-3 * camera.eye.length() {
             prop_assert!(!may_meet, "{:?} {:?}", cone, row);
+        }
+    }
+
+    /// No rectangle of the film loses what a rung says is hit by a ray through it; and what is far off one point is missed.
+    #[test]
+    fn frusta_hold_all_hits((camera, film, sphere, off) in seen(), around in prop::array::uniform4(0_u32..3)) {
+        let ray = camera.ray(film);
+        let is_hit = Rung::ALL.into_iter().any(|rung| answer(rung, &ray, sphere).is_some());
+        let [left, right, below, above] = around.map(|size| 0.05 * size as f32);
+        let low = film - Vec2::new(left, below);
+        let high = film + Vec2::new(right, above);
+        let frustum = Frustum::around(&camera, low, high);
+        prop_assert!(!(is_hit & frustum.misses(sphere)), "{:?}", frustum);
+        let point = Frustum::around(&camera, film, film);
+        prop_assert!(!(is_hit & point.misses(sphere)), "{:?}", point);
+        let (o, r) = (sphere.center() - camera.eye, sphere.radius());
+        let is_square = camera.forward.dot(camera.up).abs() < 1e-3 * camera.up.length();
+        // Four planes cross in the ray: one of them is at most 45° from the way to the sphere.
+        let is_plain = is_square && camera.right.length().max(camera.up.length()) < 1.5;
+        if is_plain && off > 1.7 && o.length() > 1.5 * r && r > 0.02 * o.length() && o.length() > 1e-3 * camera.eye.length() {
+            prop_assert!(point.misses(sphere), "{:?}", point);
         }
     }
 

@@ -5,7 +5,8 @@
 //! the work; threads beyond it return.
 
 use glam::{UVec2, UVec3, Vec2, Vec4};
-use spirv_std::arch::{IndexUnchecked, workgroup_memory_barrier_with_group_sync};
+use spirv_std::arch::{IndexUnchecked, atomic_i_add, workgroup_memory_barrier_with_group_sync};
+use spirv_std::memory::{Scope, Semantics};
 use spirv_std::spirv;
 
 use crate::canary::{Operands, Outcome, sing};
@@ -13,7 +14,8 @@ use crate::canary::{Operands, Outcome, sing};
 use crate::canary::{WideOutcome, sing_wide};
 use crate::cone::{Cone, Reach, Row};
 use crate::film::render_pixel;
-use crate::instructions::highest_bit;
+use crate::frustum::Frustum;
+use crate::instructions::{highest_bit, lowest_bit};
 use crate::integrate::{Scenery, trace_pixel};
 use crate::nearest::{is_occluded, nearest_hit_in};
 use crate::optics::{Fresnel, Incidence};
@@ -27,6 +29,10 @@ use crate::{
     Accumulator, Camera, Effects, Hit, Launch, Light, Material, PathLaunch, Pixel, Ray, Sphere,
     Surface, layout,
 };
+
+/// Whose memory an atomic operation is on, and that it orders no other.
+const WORKGROUP: u32 = Scope::Workgroup as u32;
+const RELAXED: u32 = Semantics::NONE.bits();
 
 /// Renders one launch: a tile of the image against a run of the spheres.
 #[spirv(compute(threads(8, 16), entry_point_name = "render"))]
@@ -62,18 +68,23 @@ pub fn render(
     }
 }
 
-/// Spheres that a workgroup keeps at hand, and those that a thread looks at between two branches.
+/// Cones that a workgroup keeps at hand, and those that a thread looks at between two branches.
 const TILE: usize = 256;
 const STEP: u32 = 16;
 /// The threads of a workgroup for each tile, and the pixels of one row that each has.
-const GROUP: UVec2 = UVec2::new(8, 16);
+const GROUP: UVec2 = UVec2::new(4, 32);
+const THREADS: u32 = GROUP.x * GROUP.y;
 const PIXELS: u32 = 8;
 /// Pixels of a workgroup.
-const ALL: usize = (GROUP.x * GROUP.y * PIXELS) as usize;
+const ALL: usize = (THREADS * PIXELS) as usize;
+/// Spheres that a thread looks at for its workgroup between two barriers; and how many a workgroup's list has room for.
+const LOOKS: u32 = 4;
+const LISTED: u32 = 768;
 
-/// [`render`] for many spheres without a tree: a workgroup works out once what its 64 by 16 pixels
-/// share of a sphere, and each thread goes through the spheres with eight of the pixels.
-#[spirv(compute(threads(8, 16), entry_point_name = "render_by_tiles"))]
+/// [`render`] for many spheres without a tree. A workgroup makes a list of the spheres that any of its 32 by 32 pixels may see,
+/// of all there are. It works out once what these share of a sphere, and each thread goes through the list with eight of
+/// the pixels.
+#[spirv(compute(threads(4, 32), entry_point_name = "render_by_tiles"))]
 pub fn render_by_tiles(
     #[spirv(local_invocation_id)] local: UVec3,
     #[spirv(workgroup_id)] group: UVec3,
@@ -84,15 +95,21 @@ pub fn render_by_tiles(
     #[spirv(storage_buffer, descriptor_set = 0, binding = 2)] material_ids: &[u32],
     #[spirv(storage_buffer, descriptor_set = 0, binding = 3)] materials: &[Material],
     #[spirv(storage_buffer, descriptor_set = 0, binding = 4)] pixels: &mut [Pixel],
+    #[spirv(workgroup)] listed: &mut u32,
+    #[spirv(workgroup)] list: &mut [u32; LISTED as usize],
     #[spirv(workgroup)] tile: &mut [Vec4; TILE],
     #[spirv(workgroup)] nearest: &mut [f32; ALL],
     #[spirv(workgroup)] found: &mut [u32; ALL],
 ) {
     let thread = local.y * GROUP.x + local.x;
-    let first_pixel = UVec2::new(
-        group.x * GROUP.x * PIXELS + local.x,
-        group.y * GROUP.y + local.y,
-    );
+    let corner = UVec2::new(group.x * GROUP.x * PIXELS, group.y * GROUP.y);
+    let first_pixel = corner + local.truncate();
+    let frustum = {
+        let last = corner + UVec2::new(GROUP.x * PIXELS - 1, GROUP.y - 1);
+        let (first, last) = (film(launch, corner), film(launch, last));
+        let (low, high) = (Vec2::new(first.x, last.y), Vec2::new(last.x, first.y));
+        Frustum::around(&launch.camera, low, high)
+    };
     let row = Row::of(
         &launch.camera,
         four_across(launch, first_pixel, 0),
@@ -102,78 +119,121 @@ pub fn render_by_tiles(
     // What each pixel has found is not kept in registers, of which there are few; no other thread looks at it.
     let mut which = 0;
     while which < PIXELS {
-        let place = (GROUP.x * GROUP.y * which + thread) as usize;
+        let place = (THREADS * which + thread) as usize;
         // SAFETY: `place` is below the number of pixels.
         unsafe {
             *nearest.index_unchecked_mut(place) =
                 end_of(pixels, launch, pixel_of(first_pixel, which));
-            *found.index_unchecked_mut(place) = Hit::NONE_SPHERE;
+            *found.index_unchecked_mut(place) = 0;
         }
         which += 1;
+    }
+    if thread == 0 {
+        *listed = 0;
     }
 
     let len = spheres.len() as u32;
     let begin = launch.first_sphere.min(len);
     let end = begin + launch.sphere_count.min(len - begin);
     let mut first = begin;
+    // The bounds of the loops with barriers are the same for every thread of the workgroup.
     while first < end {
-        // The loop's bounds are the same for every thread of the workgroup.
         workgroup_memory_barrier_with_group_sync();
-        let mut at = thread;
-        while at < TILE as u32 {
-            let mut cone = Cone::none();
-            if first + at < end {
-                // SAFETY: `end` is at most the number of spheres.
-                let sphere = unsafe { *spheres.index_unchecked((first + at) as usize) };
-                cone = Cone::of(sphere, &launch.camera);
-            }
-            // SAFETY: `at` is below the tile's size.
-            unsafe { *tile.index_unchecked_mut(at as usize) = cone.to_vec4() };
-            at += GROUP.x * GROUP.y;
+        // All are asked for before the first is looked at, so that a thread waits for memory once.
+        let mine = first + thread;
+        let one = look(spheres, end, mine);
+        let two = look(spheres, end, mine + THREADS);
+        let three = look(spheres, end, mine + 2 * THREADS);
+        let four = look(spheres, end, mine + 3 * THREADS);
+        let mut seen = u32::from(!frustum.misses(one) & (mine < end));
+        seen |= u32::from(!frustum.misses(two) & (mine + THREADS < end)) << 1;
+        seen |= u32::from(!frustum.misses(three) & (mine + 2 * THREADS < end)) << 2;
+        seen |= u32::from(!frustum.misses(four) & (mine + 3 * THREADS < end)) << 3;
+        while seen != 0 {
+            let which = lowest_bit(seen);
+            seen &= seen - 1;
+            // SAFETY: all threads count by atomic additions until they next meet.
+            let place = unsafe { atomic_i_add::<u32, WORKGROUP, RELAXED>(listed, 1) };
+            // SAFETY: there was room for as many spheres as are looked at.
+            unsafe { *list.index_unchecked_mut(place as usize) = mine + which * THREADS };
         }
+        first += LOOKS * THREADS;
         workgroup_memory_barrier_with_group_sync();
-        let count = (end - first).min(TILE as u32);
-        let mut at = 0;
-        while at < count {
-            let reach = farthest_of_four(tile, &row, Row::nothing(), at);
-            let reach = farthest_of_four(tile, &row, reach, at + 4);
-            let reach = farthest_of_four(tile, &row, reach, at + 8);
-            let reach = farthest_of_four(tile, &row, reach, at + 12);
-            if row.may_meet(reach) {
-                let mut four = at;
-                while four < at + STEP {
-                    let mut left = row.candidates(cones(tile, four));
-                    // The rung's code stands here once, for whichever ray.
-                    while left != 0 {
-                        // In the order of the spheres: of two at the same t the first stays.
-                        let bit = highest_bit(left);
-                        left &= !(1 << bit);
-                        let which = (31 - bit) & 7;
-                        let index = first + four + (31 - bit) / 8;
-                        if index < end {
-                            let place = (GROUP.x * GROUP.y * which + thread) as usize;
-                            // SAFETY: `place` is below the number of pixels.
-                            let end_t = unsafe { *nearest.index_unchecked(place) };
-                            // SAFETY: `end` is at most the number of spheres.
-                            let sphere = unsafe { *spheres.index_unchecked(index as usize) };
-                            let mut ray = launch.camera.ray(row.film(which));
-                            ray.t_max = end_t;
-                            let t = intersect(rung, sphere, &ray);
-                            if t < end_t {
-                                // SAFETY: as above.
-                                unsafe {
-                                    *nearest.index_unchecked_mut(place) = t;
-                                    *found.index_unchecked_mut(place) = index;
+        let count = *listed;
+        let is_due = (count > LISTED - LOOKS * THREADS) | (first >= end);
+        let mut base = 0;
+        while is_due & (base < count) {
+            workgroup_memory_barrier_with_group_sync();
+            let left = (count - base).min(TILE as u32);
+            let mut at = thread;
+            // Up to the end of a step.
+            while at < (left + STEP - 1) / STEP * STEP {
+                let mut cone = Cone::none();
+                if at < left {
+                    // SAFETY: below the number of those listed, and of spheres.
+                    let sphere = unsafe {
+                        let index = *list.index_unchecked((base + at) as usize);
+                        *spheres.index_unchecked(index as usize)
+                    };
+                    cone = Cone::of(sphere, &launch.camera);
+                }
+                // SAFETY: `at` is below the tile's size, which is a multiple of a step.
+                unsafe { *tile.index_unchecked_mut(at as usize) = cone.to_vec4() };
+                at += THREADS;
+            }
+            workgroup_memory_barrier_with_group_sync();
+            let mut at = 0;
+            while at < left {
+                let reach = farthest_of_four(tile, &row, Row::nothing(), at);
+                let reach = farthest_of_four(tile, &row, reach, at + 4);
+                let reach = farthest_of_four(tile, &row, reach, at + 8);
+                let reach = farthest_of_four(tile, &row, reach, at + 12);
+                if row.may_meet(reach) {
+                    let mut four = at;
+                    while four < at + STEP {
+                        let mut candidates = row.candidates(cones(tile, four));
+                        // The rung's code stands here once, for whichever ray.
+                        while candidates != 0 {
+                            let bit = highest_bit(candidates);
+                            candidates &= !(1 << bit);
+                            let which = (31 - bit) & 7;
+                            let at = four + (31 - bit) / 8;
+                            if at < left {
+                                let place = (THREADS * which + thread) as usize;
+                                // SAFETY: below the number of those listed, of spheres, and of pixels.
+                                let (index, sphere, nearest_t, nearest_sphere) = unsafe {
+                                    let index = *list.index_unchecked((base + at) as usize);
+                                    (
+                                        index,
+                                        *spheres.index_unchecked(index as usize),
+                                        *nearest.index_unchecked(place),
+                                        *found.index_unchecked(place),
+                                    )
+                                };
+                                let ray = launch.camera.ray(row.film(which));
+                                let t = intersect(rung, sphere, &ray);
+                                // Lists are in no order: of two at the same t the first of all spheres is taken.
+                                if (t < nearest_t) | ((t == nearest_t) & (index < nearest_sphere)) {
+                                    // SAFETY: as above.
+                                    unsafe {
+                                        *nearest.index_unchecked_mut(place) = t;
+                                        *found.index_unchecked_mut(place) = index;
+                                    }
                                 }
                             }
                         }
+                        four += 4;
                     }
-                    four += 4;
                 }
+                at += STEP;
             }
-            at += STEP;
+            base += TILE as u32;
         }
-        first += TILE as u32;
+        // All know how many there were before the next are counted.
+        workgroup_memory_barrier_with_group_sync();
+        if is_due & (thread == 0) {
+            *listed = 0;
+        }
     }
 
     let mut which = 0;
@@ -182,14 +242,14 @@ pub fn render_by_tiles(
         let place = place_of(pixels.len(), launch, pixel);
         if place < pixels.len() {
             let ray = launch.ray(pixel, &pixels[place]);
-            let own = (GROUP.x * GROUP.y * which + thread) as usize;
+            let own = (THREADS * which + thread) as usize;
             // SAFETY: `own` is below the number of pixels.
-            let hit = unsafe {
-                Hit {
-                    t: *nearest.index_unchecked(own),
-                    sphere: *found.index_unchecked(own),
-                }
-            };
+            let (t, sphere) =
+                unsafe { (*nearest.index_unchecked(own), *found.index_unchecked(own)) };
+            let mut hit = Hit::NONE;
+            if t < ray.t_max {
+                hit = Hit { t, sphere };
+            }
             pixels[place] = launch.pixel(
                 shading,
                 &ray,
@@ -202,6 +262,13 @@ pub fn render_by_tiles(
         }
         which += 1;
     }
+}
+
+/// The sphere with this index, or the last of those up to `end`, of which there is one at least.
+#[inline]
+fn look(spheres: &[Sphere], end: u32, index: u32) -> Sphere {
+    // SAFETY: `end` is at most the number of spheres.
+    unsafe { *spheres.index_unchecked(index.min(end - 1) as usize) }
 }
 
 /// Four of the tile's cones; it is a multiple of four long, and so is `at`, which is below its end.

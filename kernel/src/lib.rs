@@ -16,6 +16,7 @@
 //! | [`nearest`] | the nearest hit of a ray among a slice of spheres, and whether there is any |
 //! | [`bounds`] | what few operations tell of a ray and a sphere for certain |
 //! | [`candidates`], [`cone`] | which of many spheres a rung must be asked about: by any ray, by a camera's |
+//! | [`frustum`] | which spheres none of a tile's rays meets |
 //! | [`tree`] | [`tree::Node`]: boxes around spheres, so that a ray looks at few |
 //! | [`traversal`] | what finds the hits of light paths |
 //! | [`surface`] | the point and the normal at a hit |
@@ -58,6 +59,7 @@ pub mod effects;
 pub mod entry;
 pub mod film;
 pub mod fog;
+pub mod frustum;
 pub mod hit;
 pub mod instructions;
 pub mod integrate;

@@ -2,9 +2,10 @@
 // textbook in 32-bit floats.
 //
 // --variant plain:  one thread a pixel, spheres from global memory.
-// --variant tricks: spheres in tiles of shared memory, as the cones that they fill seen from the one origin (what a
-//                   camera's axes make with (C - O) / sqrt(o.o - r^2)), eight pixels of a row a thread, 16 spheres a
-//                   step, two operations a test; a ray that may hit solves for t as the renderer does.
+// --variant tricks: a block lists the spheres that four planes around its 32 x 32 pixels let pass, and keeps them in shared
+//                   memory as the cones that they fill seen from the one origin (what a camera's axes make with
+//                   (C - O) / sqrt(o.o - r^2)): eight pixels of a row a thread, 16 spheres a step, two operations a test;
+//                   a ray that may hit solves for t as the renderer does.
 #include "scene.h"
 
 // Each kernel writes what the renderer it is compared with writes: a colour and a depth.
@@ -33,7 +34,8 @@ __global__ void plain(Camera camera, int width, int height, int count, const flo
     pixels[y * width + x] = pixel(nearest);
 }
 
-constexpr int TILE = 256, RAYS = 8, WIDE = 8, HIGH = 16, THREADS = WIDE * HIGH, STEP = 16, FEW = 32 / RAYS;
+constexpr int TILE = 256, RAYS = 8, WIDE = 4, HIGH = 32, THREADS = WIDE * HIGH, STEP = 16, FEW = 32 / RAYS;
+constexpr int LOOKS = 4, LISTED = 768;
 
 __device__ float dot(float3 a, float3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
@@ -45,6 +47,36 @@ __device__ float4 cone(float4 s, const Camera &camera) {
     float scale = rsqrtf(c);
     return make_float4(dot(camera.right, o) * scale, dot(camera.up, o) * scale, dot(camera.forward, o) * scale, 0.0f);
 }
+
+__device__ float3 cross(float3 a, float3 b) {
+    return make_float3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
+}
+
+// The unit normal of the plane through the eye along a ray and an axis of the film, towards a direction.
+__device__ float3 plane(float3 forward, float3 offset, float3 axis, float3 towards) {
+    float3 n = cross(make_float3(forward.x + offset.x, forward.y + offset.y, forward.z + offset.z), axis);
+    float scale = copysignf(rsqrtf(dot(n, n)), dot(n, towards));
+    return make_float3(n.x * scale, n.y * scale, n.z * scale);
+}
+
+__device__ float3 times(float3 v, float by) { return make_float3(v.x * by, v.y * by, v.z * by); }
+
+struct Frustum {
+    float3 left, right, below, above;
+
+    __device__ Frustum(const Camera &c, float left_x, float right_x, float below_y, float above_y)
+        : left(plane(c.forward, times(c.right, left_x), c.up, c.right)),
+          right(plane(c.forward, times(c.right, right_x), c.up, times(c.right, -1.0f))),
+          below(plane(c.forward, times(c.up, below_y), c.right, c.up)),
+          above(plane(c.forward, times(c.up, above_y), c.right, times(c.up, -1.0f))) {}
+
+    __device__ bool misses(float4 s, float3 eye) const {
+        float3 o = make_float3(s.x - eye.x, s.y - eye.y, s.z - eye.z);
+        float oo = dot(o, o), rr = s.w * s.w;
+        float farthest = fminf(fminf(dot(o, left), dot(o, right)), fminf(dot(o, below), dot(o, above)));
+        return farthest < 0.0f && farthest * farthest > rr + (oo + rr) / (1 << 16);
+    }
+};
 
 // The first hit, by the foot of the perpendicular.
 __device__ float solve(float4 s, float3 eye, float3 d) {
@@ -60,6 +92,7 @@ __device__ float solve(float4 s, float3 eye, float3 d) {
 
 __global__ void tricks(Camera camera, int width, int height, int count, const float4 *spheres,
                        float4 *pixels) {
+    __shared__ int listed, list[LISTED];
     __shared__ float4 tile[TILE];
     __shared__ float nearest[RAYS][THREADS];
     __shared__ int found[RAYS][THREADS];
@@ -74,50 +107,77 @@ __global__ void tricks(Camera camera, int width, int height, int count, const fl
         nearest[ray][thread] = 3.4e38f;
         found[ray][thread] = -1;
     }
-    for (int first = 0; first < count; first += TILE) {
+    int corner_x = blockIdx.x * WIDE * RAYS, corner_y = blockIdx.y * HIGH;
+    auto film_x = [&](int x) { return (2 * x + 1 - width) / (float)width; };
+    auto film_y = [&](int y) { return (height - 2 * y - 1) / (float)height; };
+    Frustum frustum(camera, film_x(corner_x), film_x(corner_x + WIDE * RAYS - 1), film_y(corner_y + HIGH - 1),
+                    film_y(corner_y));
+    if (thread == 0) listed = 0;
+    for (int first = 0; first < count;) {
         __syncthreads();
-        for (int i = thread; i < TILE; i += THREADS)
-            tile[i] = first + i < count ? cone(spheres[first + i], camera) : make_float4(0.0f, 0.0f, 0.0f, 0.0f);
+        float4 look[LOOKS];
+#pragma unroll
+        for (int i = 0; i < LOOKS; i++) look[i] = spheres[min(first + thread + i * THREADS, count - 1)];
+#pragma unroll
+        for (int i = 0; i < LOOKS; i++) {
+            int index = first + thread + i * THREADS;
+            if (index < count && !frustum.misses(look[i], camera.eye)) list[atomicAdd(&listed, 1)] = index;
+        }
+        first += LOOKS * THREADS;
         __syncthreads();
-        int last = min(TILE, count - first);
-        for (int i = 0; i < last; i += STEP) {
-            // As integers, of which three are compared by one instruction.
-            int farthest[RAYS];
+        int due = listed > LISTED - LOOKS * THREADS || first >= count ? listed : 0;
+        for (int base = 0; base < due; base += TILE) {
+            __syncthreads();
+            int left = min(due - base, TILE);
+            for (int i = thread; i < (left + STEP - 1) / STEP * STEP; i += THREADS)
+                tile[i] = i < left ? cone(spheres[list[base + i]], camera) : make_float4(0.0f, 0.0f, 0.0f, 0.0f);
+            __syncthreads();
+            for (int i = 0; i < left; i += STEP) {
+                // As integers, of which three are compared by one instruction.
+                int farthest[RAYS];
 #pragma unroll
-            for (int k = 0; k < STEP; k += 2) {
-                float4 g = tile[i + k], h = tile[i + k + 1];
-                float row_g = fmaf(up, g.y, g.z), row_h = fmaf(up, h.y, h.z);
+                for (int k = 0; k < STEP; k += 2) {
+                    float4 g = tile[i + k], h = tile[i + k + 1];
+                    float row_g = fmaf(up, g.y, g.z), row_h = fmaf(up, h.y, h.z);
 #pragma unroll
-                for (int ray = 0; ray < RAYS; ray++) {
-                    int a = __float_as_int(fmaf(across[ray], g.x, row_g));
-                    int b = __float_as_int(fmaf(across[ray], h.x, row_h));
-                    farthest[ray] = k == 0 ? max(a, b) : max(max(farthest[ray], a), b);
+                    for (int ray = 0; ray < RAYS; ray++) {
+                        int a = __float_as_int(fmaf(across[ray], g.x, row_g));
+                        int b = __float_as_int(fmaf(across[ray], h.x, row_h));
+                        farthest[ray] = k == 0 ? max(a, b) : max(max(farthest[ray], a), b);
+                    }
                 }
-            }
-            bool may_hit = false;
+                bool may_hit = false;
 #pragma unroll
-            for (int ray = 0; ray < RAYS; ray++) may_hit |= farthest[ray] >= __float_as_int(lengths[ray]);
-            if (!may_hit) continue;
+                for (int ray = 0; ray < RAYS; ray++) may_hit |= farthest[ray] >= __float_as_int(lengths[ray]);
+                if (!may_hit) continue;
 #pragma unroll 1
-            for (int few = i; few < i + STEP; few += FEW) {
-                unsigned misses = 0;
+                for (int few = i; few < i + STEP; few += FEW) {
+                    unsigned misses = 0;
 #pragma unroll
-                for (int k = 0; k < FEW; k++) {
-                    float4 g = tile[few + k];
-                    float row = fmaf(up, g.y, g.z);
+                    for (int k = 0; k < FEW; k++) {
+                        float4 g = tile[few + k];
+                        float row = fmaf(up, g.y, g.z);
 #pragma unroll
-                    for (int ray = 0; ray < RAYS; ray++)
-                        misses = __funnelshift_l(__float_as_uint(fmaf(across[ray], g.x, row) - lengths[ray]), misses, 1);
-                }
-                for (unsigned left = ~misses; left != 0;) {
-                    int at = __clz(left), ray = at % RAYS, index = first + few + at / RAYS;
-                    left &= ~(0x80000000u >> at);
-                    float3 d = direction(camera, x + ray * WIDE, y, width, height);
-                    float t = solve(spheres[index], camera.eye, d);
-                    if (t < nearest[ray][thread]) nearest[ray][thread] = t, found[ray][thread] = index;
+                        for (int ray = 0; ray < RAYS; ray++) {
+                            float by = fmaf(across[ray], g.x, row) - lengths[ray];
+                            misses = __funnelshift_l(__float_as_uint(by), misses, 1);
+                        }
+                    }
+                    for (unsigned rest = ~misses; rest != 0;) {
+                        int at = __clz(rest), ray = at % RAYS, place = few + at / RAYS;
+                        rest &= ~(0x80000000u >> at);
+                        if (place >= left) continue;
+                        int index = list[base + place];
+                        float3 d = direction(camera, x + ray * WIDE, y, width, height);
+                        float t = solve(spheres[index], camera.eye, d), before = nearest[ray][thread];
+                        if (t < before || (t == before && index < found[ray][thread]))
+                            nearest[ray][thread] = t, found[ray][thread] = index;
+                    }
                 }
             }
         }
+        __syncthreads();
+        if (due && thread == 0) listed = 0;
     }
 #pragma unroll
     for (int ray = 0; ray < RAYS; ray++)
