@@ -50,8 +50,8 @@ impl Limit {
     pub fn of(device: &Device) -> Result<Self> {
         match device {
             Device::Cpu => Ok(Self {
-                operations_per_s: multiply_on_cpu(),
-                bytes_per_s: copy_on_cpu(),
+                operations_per_s: multiply_on_cpu()?,
+                bytes_per_s: copy_on_cpu()?,
             }),
             Device::Gpu(gpu) => Ok(Self {
                 operations_per_s: multiply_on_gpu(gpu)?,
@@ -101,34 +101,30 @@ fn products(factor: f32, rounds: u32) -> f32 {
 /// As many as hide how long a multiplication takes, and fit the registers.
 const PRODUCTS: usize = 10;
 
-fn multiply_on_cpu() -> f64 {
+fn multiply_on_cpu() -> Result<f64> {
     const FACTORS: u32 = 2_000_000;
-    let mut most = 0.0_f64;
-    for _ in 0..ROUNDS {
+    fastest(|| {
         let started = Instant::now();
         let threads = rayon::broadcast(|_| black_box(products(black_box(0.999_999_9), FACTORS)));
         let done = threads.len() as f64 * f64::from(FACTORS) * (16 * PRODUCTS) as f64;
-        most = most.max(done / started.elapsed().as_secs_f64());
-    }
-    most
+        Ok(done / started.elapsed().as_secs_f64())
+    })
 }
 
-fn copy_on_cpu() -> f64 {
+fn copy_on_cpu() -> Result<f64> {
     const WORDS: usize = 1 << 25;
     const PIECE: usize = 1 << 16;
     let from = vec![1_u32; WORDS];
     let mut to = vec![2_u32; WORDS];
-    let mut most = 0.0_f64;
-    for _ in 0..ROUNDS {
+    let bytes = (size_of_val(&from[..]) + size_of_val(&to[..])) as f64;
+    fastest(|| {
         let started = Instant::now();
         to.par_chunks_mut(PIECE)
             .zip(from.par_chunks(PIECE))
             .for_each(|(to, from)| to.copy_from_slice(from));
         black_box(&to);
-        let bytes = (size_of_val(&from[..]) + size_of_val(&to[..])) as f64;
-        most = most.max(bytes / started.elapsed().as_secs_f64());
-    }
-    most
+        Ok(bytes / started.elapsed().as_secs_f64())
+    })
 }
 
 fn multiply_on_gpu(gpu: &Gpu) -> Result<f64> {
