@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use spherule::accuracy::oracle::Intersection;
 use spherule::accuracy::ulp;
 use spherule::kernel::bounds::Line;
-use spherule::kernel::cone::{Cone, Row};
+use spherule::kernel::cone::{Cone, Row, is_square};
 use spherule::kernel::frustum::Frustum;
 use spherule::kernel::glam::{Vec2, Vec4};
 use spherule::kernel::precision::intersect;
@@ -144,8 +144,7 @@ proptest! {
     #[test]
     fn cones_hold_all_hits((camera, film, sphere, off) in seen(), k in 0_usize..8, place in 0_usize..4) {
         let ray = camera.ray(film);
-        let is_hit = Rung::ALL.into_iter().any(|rung| answer(rung, &ray, sphere).is_some());
-        let cone = Cone::of(sphere, &camera);
+        let cone = Cone::of(sphere, &camera, is_square(&camera));
         let mut x = [-film.x; 8];
         x[k] = film.x;
         let [low, high] = [[0, 1, 2, 3], [4, 5, 6, 7]].map(|of| Vec4::from_array(of.map(|i| x[i])));
@@ -153,10 +152,8 @@ proptest! {
         let mut cones = [Cone::none(); 4];
         cones[place] = cone;
         let may_meet = row.candidates(cones) >> (31 - 8 * place - k) & 1 == 1;
+        let is_hit = Rung::ALL.into_iter().any(|rung| answer(rung, &ray, sphere).is_some());
         prop_assert!(may_meet | !is_hit, "{:?} {:?}", cone, row);
-        let reach = row.farther(Row::nothing(), cones[0], cones[1]);
-        let reach = row.farther(reach, cones[2], cones[3]);
-        prop_assert!(row.may_meet(reach) | !is_hit);
         let (o, r) = (sphere.center() - camera.eye, sphere.radius());
         let is_square = camera.forward.dot(camera.up).abs() < 1e-3 * camera.up.length();
         // Beyond the silhouette by a fifth, from outside, as large as a hundredth of what is seen.

@@ -133,7 +133,7 @@ fn bands<const SHADING: u32, const RUNG: u32>(
                             &world.spheres,
                             &world.material_ids,
                             &world.materials,
-                            pixel,
+                            launch.unless_hit(pixel),
                         );
                     }
                 }

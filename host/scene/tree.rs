@@ -8,6 +8,8 @@
 //! farther apart along it: so that octants tell the children's order. The spheres of one node, up to 32, are shared out among its children by the same
 //! heuristic, over every place where they could be split.
 
+use std::array;
+
 use glam::{DVec3, UVec4, Vec3, Vec4};
 use rayon::prelude::*;
 use spherule_kernel::Sphere;
@@ -145,6 +147,21 @@ impl Bounds {
             .fold(Self::EMPTY, |bounds, item| bounds.with(item.bounds()))
     }
 
+    /// And of twice their middles.
+    fn of_all_and_middles(items: &[Item]) -> (Self, Self) {
+        let middles = items
+            .iter()
+            .fold(Self::EMPTY, |bounds, item| bounds.with_point(item.middle()));
+        (Self::of_all(items), middles)
+    }
+
+    fn with_point(self, point: Vec4) -> Self {
+        Self {
+            low: self.low.min(point),
+            high: self.high.max(point),
+        }
+    }
+
     /// Half of the surface, or nothing for an empty box.
     fn area(self) -> f32 {
         let side = (self.high - self.low).max(Vec4::ZERO);
@@ -226,7 +243,13 @@ pub fn grow(
     if !items.par_iter().with_min_len(GRAIN).all(is_within) {
         return None;
     }
-    let bounds = bounds_of_all(&items);
+    let (bounds, middles) = items
+        .par_chunks(GRAIN)
+        .map(Bounds::of_all_and_middles)
+        .reduce(
+            || (Bounds::EMPTY, Bounds::EMPTY),
+            |a, b| (a.0.with(b.0), a.1.with(b.1)),
+        );
     let smallest_radius = spheres
         .par_iter()
         .with_min_len(GRAIN)
@@ -237,10 +260,28 @@ pub fn grow(
         high: bounds.high.truncate(),
         smallest_radius,
     };
-    let branch = Branch::grow(&mut items, bounds, 0);
-    let mut nodes = vec![extent.to_node(), Node::default()];
-    let mut order = Vec::with_capacity(count);
-    branch.put(Node::ROOT as usize, &mut nodes, &mut order);
+    // What splits of many items are sorted into.
+    let room = if count < SHARED { 0 } else { count };
+    let scratch = (0..room).into_par_iter().with_min_len(GRAIN);
+    let mut scratch: Vec<Item> = scratch.map(|_| Item::NONE).collect();
+    let whole = Part {
+        items: &mut items,
+        scratch: &mut scratch,
+        bounds,
+        middles,
+        weights: Vec3::ONE,
+    };
+    let branch = Branch::grow(whole, 0);
+    let above = Node::ROOT as usize + 1;
+    let mut nodes = bytemuck::zeroed_vec::<Node>(above + branch.count_nodes());
+    let mut order = bytemuck::zeroed_vec::<u32>(count);
+    let (top, below) = nodes.split_at_mut(above);
+    top[0] = extent.to_node();
+    branch.put(
+        &mut top[Node::ROOT as usize],
+        (above as u32, below),
+        (0, &mut order),
+    );
     Some(Tree { nodes, order })
 }
 
@@ -248,16 +289,6 @@ pub fn grow(
 #[must_use]
 pub fn grow_still(spheres: &[Sphere], min_spheres: usize) -> Option<Tree> {
     grow(spheres, &[], (0.0, 0.0), min_spheres)
-}
-
-fn bounds_of_all(items: &[Item]) -> Bounds {
-    if items.len() < SHARED {
-        return Bounds::of_all(items);
-    }
-    items
-        .par_chunks(GRAIN)
-        .map(Bounds::of_all)
-        .reduce(|| Bounds::EMPTY, Bounds::with)
 }
 
 /// A node and what is below it.
@@ -274,72 +305,98 @@ struct Branch {
 /// A child of a node: which items, and their box.
 struct Part<'a> {
     items: &'a mut [Item],
+    /// Room for as many items, where threads share the work on them.
+    scratch: &'a mut [Item],
     bounds: Bounds,
+    /// The box of twice their middles, of a part that may be split.
+    middles: Bounds,
     /// What an axis counts for when the next split's is chosen: less, once the node was split along it.
     weights: Vec3,
 }
 
 impl Branch {
-    fn grow(items: &mut [Item], bounds: Bounds, depth: usize) -> Self {
+    fn grow(part: Part<'_>, depth: usize) -> Self {
         let mut branch = Self {
             node: Node::default(),
             nodes: Vec::new(),
             order: Vec::new(),
             branches: Vec::new(),
         };
-        if items.len() < GRAIN {
-            let count = items.len();
+        let count = part.items.len();
+        if count < GRAIN {
             branch.nodes.reserve(count / 8);
             branch.order.reserve(count);
-            branch.node = grow_alone(items, bounds, depth, &mut branch.nodes, &mut branch.order);
+            branch.node = grow_alone(part, depth, &mut branch.nodes, &mut branch.order);
             return branch;
         }
-        let (node, inner) = make_node(items, bounds, depth, 0, &mut branch.order);
+        let (node, inner) = make_node(part, depth, 0, &mut branch.order);
         branch.node = node;
         branch.branches = inner
             .into_par_iter()
-            .map(|part| Self::grow(part.items, part.bounds, depth + 1))
+            .map(|part| Self::grow(part, depth + 1))
             .collect();
         branch
     }
 
-    /// Puts the node at `at`, and what is below it behind all others.
-    fn put(self, at: usize, nodes: &mut Vec<Node>, order: &mut Vec<u32>) {
-        let first_sphere = order.len() as u32;
-        let first_node = nodes.len() as u32;
+    /// How many nodes there are below this one.
+    fn count_nodes(&self) -> usize {
+        let below = self.branches.iter().map(|branch| 1 + branch.count_nodes());
+        self.nodes.len() + below.sum::<usize>()
+    }
+
+    fn count_spheres(&self) -> usize {
+        let below = self.branches.iter().map(Self::count_spheres);
+        self.order.len() + below.sum::<usize>()
+    }
+
+    /// Puts the node and what is below it where they belong in the tree: `nodes` has room for those below it, the first of which is number
+    /// `first_node`, and `order` for its spheres.
+    fn put(
+        self,
+        node: &mut Node,
+        (first_node, nodes): (u32, &mut [Node]),
+        (first_sphere, order): (u32, &mut [u32]),
+    ) {
         let moved = |node: Node| {
             let mut node = node;
             node.links.x += first_node;
             node.links.y += first_sphere;
             node
         };
-        order.extend(&self.order);
-        nodes[at] = moved(self.node);
+        *node = moved(self.node);
+        let (own, mut order) = order.split_at_mut(self.order.len());
+        own.copy_from_slice(&self.order);
         if self.branches.is_empty() {
-            nodes.extend(self.nodes.into_iter().map(moved));
-        } else {
-            let first = nodes.len();
-            nodes.resize(first + self.branches.len(), Node::default());
-            for (index, branch) in self.branches.into_iter().enumerate() {
-                branch.put(first + index, nodes, order);
+            for (place, node) in nodes.iter_mut().zip(self.nodes) {
+                *place = moved(node);
             }
+            return;
         }
+        let (children, mut nodes) = nodes.split_at_mut(self.branches.len());
+        let mut first_node = first_node + children.len() as u32;
+        let mut first_sphere = first_sphere + own.len() as u32;
+        let mut work = Vec::with_capacity(children.len());
+        for (child, branch) in children.iter_mut().zip(self.branches) {
+            let (below, rest) = nodes.split_at_mut(branch.count_nodes());
+            let (spheres, others) = order.split_at_mut(branch.count_spheres());
+            (nodes, order) = (rest, others);
+            let starts = (first_node, first_sphere);
+            first_node += below.len() as u32;
+            first_sphere += spheres.len() as u32;
+            work.push((branch, child, (starts.0, below), (starts.1, spheres)));
+        }
+        work.into_par_iter()
+            .for_each(|(branch, child, nodes, order)| branch.put(child, nodes, order));
     }
 }
 
 /// The node over these items; what is below it goes to the ends of `nodes` and `order`.
-fn grow_alone(
-    items: &mut [Item],
-    bounds: Bounds,
-    depth: usize,
-    nodes: &mut Vec<Node>,
-    order: &mut Vec<u32>,
-) -> Node {
+fn grow_alone(part: Part<'_>, depth: usize, nodes: &mut Vec<Node>, order: &mut Vec<u32>) -> Node {
     let first = nodes.len();
-    let (node, inner) = make_node(items, bounds, depth, first as u32, order);
+    let (node, inner) = make_node(part, depth, first as u32, order);
     nodes.resize(first + inner.len(), Node::default());
     for (index, part) in inner.into_iter().enumerate() {
-        let child = grow_alone(part.items, part.bounds, depth + 1, nodes, order);
+        let child = grow_alone(part, depth + 1, nodes, order);
         nodes[first + index] = child;
     }
     node
@@ -348,21 +405,20 @@ fn grow_alone(
 /// A node over these items, whose first child that is a node is at `first_node`; its spheres go to
 /// the end of `order`. Returns those children, too.
 fn make_node<'a>(
-    items: &'a mut [Item],
-    bounds: Bounds,
+    whole: Part<'a>,
     depth: usize,
     first_node: u32,
     order: &mut Vec<u32>,
 ) -> (Node, Vec<Part<'a>>) {
+    let bounds = whole.bounds;
     let mut parts = Vec::with_capacity(Node::WIDTH);
-    if items.len() <= FULL {
-        share_out(items, Node::WIDTH, Vec3::ONE, &mut parts);
+    if whole.items.len() <= FULL {
+        share_out(whole.items, Node::WIDTH, Vec3::ONE, &mut parts);
     } else {
-        let limit = child_size(items.len());
+        let limit = child_size(whole.items.len());
         parts.push(Part {
-            items,
-            bounds,
             weights: Vec3::ONE,
+            ..whole
         });
         while parts.len() < Node::WIDTH {
             // The largest of those that are too large for a lower node, and at last none is.
@@ -425,7 +481,9 @@ fn share_out<'a>(items: &'a mut [Item], places: usize, weights: Vec3, parts: &mu
         let bounds = Bounds::of_all(items);
         parts.push(Part {
             items,
+            scratch: &mut [],
             bounds,
+            middles: Bounds::EMPTY,
             weights,
         });
         return;
@@ -477,47 +535,31 @@ fn sort_by_middle(items: &mut [Item], axis: usize) {
     }
 }
 
-/// The smallest and the largest of their middles.
-fn range_of_middles(items: &[Item]) -> (Vec4, Vec4) {
-    items
-        .iter()
-        .fold((Vec4::MAX, Vec4::MIN), |(low, high), item| {
-            (low.min(item.middle()), high.max(item.middle()))
-        })
-}
-
 fn widest_axis(items: &[Item], weights: Vec3) -> usize {
-    let (low, high) = range_of_middles(items);
-    ((high - low).truncate() * weights).max_position()
+    let (_, middles) = Bounds::of_all_and_middles(items);
+    ((middles.high - middles.low).truncate() * weights).max_position()
 }
 
 /// Splits a part in two, neither of them empty, where a ray pays least for it.
 fn split(part: Part<'_>, depth: usize) -> (Part<'_>, Part<'_>) {
-    let Part { items, weights, .. } = part;
+    let Part {
+        items,
+        scratch,
+        middles,
+        weights,
+        ..
+    } = part;
     if depth < HALVING_DEPTH {
         let best = if items.len() < FEW {
-            best_split::<FEW_BINS>(items, weights)
+            best_split::<FEW_BINS>(items, middles, weights)
         } else {
-            best_split::<BINS>(items, weights)
+            best_split::<BINS>(items, middles, weights)
         };
         if let Some(best) = best {
-            let middle = best.partition(items);
-            if middle == best.count {
-                let weights = split_along(weights, best.places.axis);
-                let (left, right) = items.split_at_mut(middle);
-                return (
-                    Part {
-                        items: left,
-                        bounds: best.left,
-                        weights,
-                    },
-                    Part {
-                        items: right,
-                        bounds: best.right,
-                        weights,
-                    },
-                );
-            }
+            let (items, scratch) = best.partition(items, scratch);
+            let sides = [&best.left, &best.right].map(|bin| (bin.bounds, bin.middles));
+            let weights = split_along(weights, best.places.axis);
+            return halves(items, scratch, best.left.count, sides, weights);
         }
     }
     // All in one place, or as deep as may be.
@@ -527,19 +569,31 @@ fn split(part: Part<'_>, depth: usize) -> (Part<'_>, Part<'_>) {
         let order = a.middle()[axis].total_cmp(&b.middle()[axis]);
         order.then(a.index().cmp(&b.index()))
     });
+    let (left, right) = items.split_at(middle);
+    let sides = [left, right].map(Bounds::of_all_and_middles);
+    halves(items, scratch, middle, sides, weights)
+}
+
+/// The two parts of items that are sorted so, with their boxes and those of twice their middles.
+fn halves<'a>(
+    items: &'a mut [Item],
+    scratch: &'a mut [Item],
+    middle: usize,
+    [of_left, of_right]: [(Bounds, Bounds); 2],
+    weights: Vec3,
+) -> (Part<'a>, Part<'a>) {
     let (left, right) = items.split_at_mut(middle);
-    let (of_left, of_right) = (Bounds::of_all(left), Bounds::of_all(right));
+    let (room_left, room_right) = scratch.split_at_mut(middle.min(scratch.len()));
+    let half = |items, scratch, (bounds, middles)| Part {
+        items,
+        scratch,
+        bounds,
+        middles,
+        weights,
+    };
     (
-        Part {
-            items: left,
-            bounds: of_left,
-            weights,
-        },
-        Part {
-            items: right,
-            bounds: of_right,
-            weights,
-        },
+        half(left, room_left, of_left),
+        half(right, room_right, of_right),
     )
 }
 
@@ -569,75 +623,88 @@ impl Places {
 struct Split {
     places: Places,
     bin: usize,
-    count: usize,
-    left: Bounds,
-    right: Bounds,
+    left: Bin,
+    right: Bin,
+    /// How many go to the left of each [`GRAIN`] items, where threads share the work.
+    of_chunks: Vec<usize>,
 }
 
 impl Split {
-    /// Puts the items of the left side first; says how many.
-    fn partition(&self, items: &mut [Item]) -> usize {
+    /// Puts the items of the left side first, in `items` or, by many threads, in `scratch`. Returns where they are, and the other.
+    fn partition<'a>(
+        &self,
+        items: &'a mut [Item],
+        scratch: &'a mut [Item],
+    ) -> (&'a mut [Item], &'a mut [Item]) {
         let end = self.bin as f32;
         let is_left = |item: &Item| self.places.bin(item) < end;
         if items.len() >= SHARED {
-            return partition_shared(items, is_left);
+            partition_shared(items, scratch, &self.of_chunks, is_left);
+            return (scratch, items);
         }
-        partition(items, is_left)
+        partition(items, is_left);
+        (items, scratch)
     }
 }
 
-/// Puts the items of the left side first; says how many. Without branches, which no processor could foretell.
-fn partition(items: &mut [Item], is_left: impl Fn(&Item) -> bool) -> usize {
+/// Puts the items of the left side first. Without branches, which no processor could foretell.
+fn partition(items: &mut [Item], is_left: impl Fn(&Item) -> bool) {
     let mut count = 0;
     for at in 0..items.len() {
         let is_left = is_left(&items[at]);
         items.swap(at, count);
         count += usize::from(is_left);
     }
-    count
 }
 
-/// As a partition in place, by many threads and through a copy.
-fn partition_shared(items: &mut [Item], is_left: impl Fn(&Item) -> bool + Sync) -> usize {
-    let mut sorted = items.to_vec();
-    let counts: Vec<usize> = sorted
-        .par_chunks_mut(GRAIN)
-        .map(|chunk| partition(chunk, &is_left))
-        .collect();
-    let count = counts.iter().sum();
-    let (mut left, mut right) = items.split_at_mut(count);
-    let mut copies = Vec::with_capacity(2 * counts.len());
-    for (chunk, count) in sorted.chunks(GRAIN).zip(counts) {
-        let (of_left, of_right) = chunk.split_at(count);
-        let (here, rest) = left.split_at_mut(of_left.len());
-        copies.push((here, of_left));
+/// Sorts `items` into `sorted`, those of the left side first, of which every [`GRAIN`] have so many; by many threads.
+fn partition_shared(
+    items: &[Item],
+    sorted: &mut [Item],
+    of_chunks: &[usize],
+    is_left: impl Fn(&Item) -> bool + Sync,
+) {
+    let (mut left, mut right) = sorted.split_at_mut(of_chunks.iter().sum());
+    let mut places = Vec::with_capacity(of_chunks.len());
+    for (chunk, count) in items.chunks(GRAIN).zip(of_chunks) {
+        let (of_left, rest) = left.split_at_mut(*count);
         left = rest;
-        let (here, rest) = right.split_at_mut(of_right.len());
-        copies.push((here, of_right));
+        let (of_right, rest) = right.split_at_mut(chunk.len() - count);
         right = rest;
+        places.push((chunk, of_left, of_right));
     }
-    copies
+    let copy = || vec![Item::NONE; GRAIN];
+    places
         .into_par_iter()
-        .for_each(|(here, from)| here.copy_from_slice(from));
-    count
+        .for_each_init(copy, |copy, (chunk, left, right)| {
+            let copy = &mut copy[..chunk.len()];
+            copy.copy_from_slice(chunk);
+            partition(copy, &is_left);
+            left.copy_from_slice(&copy[..left.len()]);
+            right.copy_from_slice(&copy[left.len()..]);
+        });
 }
 
 /// What fell into a bin.
 #[derive(Clone, Copy)]
 struct Bin {
     bounds: Bounds,
+    /// The box of twice the middles.
+    middles: Bounds,
     count: usize,
 }
 
 impl Bin {
     const EMPTY: Self = Self {
         bounds: Bounds::EMPTY,
+        middles: Bounds::EMPTY,
         count: 0,
     };
 
     fn with(self, other: Self) -> Self {
         Self {
             bounds: self.bounds.with(other.bounds),
+            middles: self.middles.with(other.middles),
             count: self.count + other.count,
         }
     }
@@ -652,6 +719,7 @@ fn bins_of<const N: usize>(items: &[Item], places: &Places) -> [Bin; N] {
     for item in items {
         let bin = &mut bins[(places.bin(item) as usize).min(N - 1)];
         bin.bounds = bin.bounds.with(item.bounds());
+        bin.middles = bin.middles.with_point(item.middle());
         bin.count += 1;
     }
     bins
@@ -659,17 +727,8 @@ fn bins_of<const N: usize>(items: &[Item], places: &Places) -> [Bin; N] {
 
 /// The cheapest split between bins along the axis on which the middles are farthest apart; `None` if all are in
 /// one place.
-fn best_split<const N: usize>(items: &[Item], weights: Vec3) -> Option<Split> {
-    let is_shared = items.len() >= SHARED;
-    let (low, high) = if is_shared {
-        items.par_chunks(GRAIN).map(range_of_middles).reduce(
-            || (Vec4::MAX, Vec4::MIN),
-            |a, b| (a.0.min(b.0), a.1.max(b.1)),
-        )
-    } else {
-        range_of_middles(items)
-    };
-    let width = (high - low).truncate();
+fn best_split<const N: usize>(items: &[Item], middles: Bounds, weights: Vec3) -> Option<Split> {
+    let width = (middles.high - middles.low).truncate();
     let axis = (width * weights).max_position();
     let scale = N as f32 * (1.0 - 1e-6) / width[axis];
     if !scale.is_finite() {
@@ -677,22 +736,23 @@ fn best_split<const N: usize>(items: &[Item], weights: Vec3) -> Option<Split> {
     }
     let places = Places {
         axis,
-        low: low[axis],
+        low: middles.low[axis],
         scale,
     };
-    let bins: [Bin; N] = if is_shared {
+    let chunks: Vec<[Bin; N]> = if items.len() >= SHARED {
         let bins = items.par_chunks(GRAIN).map(|chunk| bins_of(chunk, &places));
-        bins.reduce(
-            || [Bin::EMPTY; N],
-            |mut all, bins| {
-                for (all, bin) in all.iter_mut().zip(bins) {
-                    *all = all.with(bin);
-                }
-                all
-            },
-        )
+        bins.collect()
     } else {
+        Vec::new()
+    };
+    let bins: [Bin; N] = if chunks.is_empty() {
         bins_of(items, &places)
+    } else {
+        array::from_fn(|at| {
+            chunks
+                .iter()
+                .fold(Bin::EMPTY, |sum, bins| sum.with(bins[at]))
+        })
     };
 
     let mut right = [Bin::EMPTY; N];
@@ -701,7 +761,7 @@ fn best_split<const N: usize>(items: &[Item], weights: Vec3) -> Option<Split> {
         sum = sum.with(bins[at]);
         right[at] = sum;
     }
-    let mut best: Option<Split> = None;
+    let mut best = None;
     let mut cheapest = f32::MAX;
     let mut left = Bin::EMPTY;
     for at in 1..N {
@@ -709,16 +769,19 @@ fn best_split<const N: usize>(items: &[Item], weights: Vec3) -> Option<Split> {
         let cost = left.cost() + right[at].cost();
         if left.count > 0 && right[at].count > 0 && cost < cheapest {
             cheapest = cost;
-            best = Some(Split {
-                places,
-                bin: at,
-                count: left.count,
-                left: left.bounds,
-                right: right[at].bounds,
-            });
+            best = Some((at, left, right[at]));
         }
     }
-    best
+    best.map(|(bin, left, right)| Split {
+        places,
+        bin,
+        left,
+        right,
+        of_chunks: chunks
+            .iter()
+            .map(|bins| bins[..bin].iter().map(|bin| bin.count).sum())
+            .collect(),
+    })
 }
 
 /// A place for each child, so that a ray of any octant meets the nearer before the farther: bit k of

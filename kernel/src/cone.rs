@@ -1,4 +1,4 @@
-//! Brute force at a GPU's rate: two operations a test that tell which spheres a rung must be asked about.
+//! Brute force at a GPU's rate: three operations a test that tell which spheres a rung must be asked about.
 //! Runs on the GPU and on the CPU.
 //!
 //! Seen from an eye outside of it, a sphere fills a cone. With o = C − O, c = o·o − r² and h = o/√c, a line along d
@@ -6,11 +6,11 @@
 //! d·h = x (R·h) + (y (U·h) + F·h): the three products are shared by all rays, the bracket by a row of pixels, and
 //! |d| by all spheres.
 //!
-//! In 32-bit floats, u = 2⁻²⁴, cos θ is off by 48u at most: d and its product by 10u (|F| + |x R| + |y U|), of which
-//! the bracket is 2|d| at most for directions that [`Row`] lets pass, |d| by 12u and 1/√c by 16u where a root
-//! and a quotient are as bad as Vulkan allows. c is off by 6u (o·o + r²), and what a rung calls a hit the exact numbers may miss by
-//! 24u (o·o + r²), as the rungs' modules say. Roots of numbers up to 1 that are apart by δ are apart by δ/2; c is therefore taken less by
-//! 128u (o·o + r²), (128 − 6 − 24)/2 being 49, and no rung's hit is passed by. Behind an eye that is
+//! In 32-bit floats, u = 2⁻²⁴, cos θ is off by 53u at most: d and its product by 10u (|F| + |x R| + |y U|), of which
+//! the bracket is 2|d| at most for cameras that [`is_square`]; |d| by 17u, as |d|² is summed up of terms that are together 1.25 |d|² at most, and off by 22u of
+//! them; and 1/√c by 16u where a root and a quotient are as bad as Vulkan allows. c is off by 6u (o·o + r²), and what a rung calls a hit the exact
+//! numbers may miss by 24u (o·o + r²), as the rungs' modules say. Roots of numbers up to 1 that are apart by δ are apart by δ/2; c is therefore taken
+//! less by 160u (o·o + r²), (160 − 6 − 24)/2 being 65, and no rung's hit is passed by. Behind an eye that is
 //! outside by as much as that no rung hits.
 
 use glam::{Vec2, Vec3, Vec4};
@@ -19,29 +19,46 @@ use glam::{Vec2, Vec3, Vec4};
 use spirv_std::num_traits::Float as _;
 
 use crate::camera::Camera;
-use crate::instructions::larger;
-use crate::ray::Ray;
 use crate::sphere::Sphere;
 
-/// 128u.
-const SLACK: f32 = 1.0 / (1 << 17) as f32;
+/// 160u.
+const SLACK: f32 = 1.25 / (1 << 17) as f32;
 /// Where c and its root are far from underflow and overflow.
 const SMALLEST: f32 = 1.0 / LARGEST;
 const LARGEST: f32 = (1_u128 << 100) as f32;
+/// Where products of the squares of a camera's axes are.
+const SMALLEST_AXIS: f32 = 1.0 / LARGEST_AXIS;
+const LARGEST_AXIS: f32 = (1_u64 << 40) as f32;
+
+/// Whether the bounds hold for a camera's rays through the film: its axes are within 6° of right angles, so that (|F| + |x R| + |y U|)² is at most
+/// 4|d|², and neither tiny nor huge.
+#[inline]
+#[must_use]
+pub fn is_square(camera: &Camera) -> bool {
+    let (forward, right, up) = (camera.forward, camera.right, camera.up);
+    let (ff, rr, uu) = (forward.dot(forward), right.dot(right), up.dot(up));
+    let (fr, fu, ru) = (forward.dot(right), forward.dot(up), right.dot(up));
+    (fr * fr <= 0.01 * (ff * rr))
+        & (fu * fu <= 0.01 * (ff * uu))
+        & (ru * ru <= 0.01 * (rr * uu))
+        & (ff > SMALLEST_AXIS)
+        & (ff + rr + uu < LARGEST_AXIS)
+}
 
 /// What a camera's rays share of a sphere: R·h, U·h and F·h.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cone(Vec4);
 
 impl Cone {
-    /// Of a sphere; one that the eye is in, or near, or too far from for 32 bits is met by all rays.
+    /// Of a sphere, if the camera [`is_square`]; otherwise, and where the eye is in a sphere, or near, or too far away for 32 bits, all rays
+    /// meet it.
     #[inline]
     #[must_use]
-    pub fn of(sphere: Sphere, camera: &Camera) -> Self {
+    pub fn of(sphere: Sphere, camera: &Camera, is_square: bool) -> Self {
         let o = sphere.center() - camera.eye;
         let (oo, rr) = (o.dot(o), sphere.radius() * sphere.radius());
         let c = (oo - rr) - SLACK * (oo + rr);
-        if (c > SMALLEST) & (c < LARGEST) {
+        if is_square & (c > SMALLEST) & (c < LARGEST) {
             let along = Vec3::new(camera.right.dot(o), camera.up.dot(o), camera.forward.dot(o));
             Self((along * (1.0 / c.sqrt())).extend(0.0))
         } else {
@@ -76,7 +93,7 @@ impl Cone {
 pub struct Row {
     y: f32,
     x: Eight<Vec4>,
-    /// |d|; the least of all numbers for a ray that is asked about every sphere.
+    /// |d|.
     lengths: Eight<Vec4>,
 }
 
@@ -92,7 +109,15 @@ impl Row {
     #[inline]
     #[must_use]
     pub fn of(camera: &Camera, low: Vec4, high: Vec4, y: f32) -> Self {
-        let of = |x| length(camera, Vec2::new(x, y));
+        // |d|² = (M + x R)·(M + x R), M what the row shares.
+        let (middle, right) = (camera.forward + camera.up * y, camera.right);
+        let (mm, mr, rr) = (
+            middle.dot(middle),
+            2.0 * middle.dot(right),
+            right.dot(right),
+        );
+        // Of cameras that are not square rounding may make it negative; any number does for them.
+        let of = |x: f32| (mm + x * (mr + x * rr)).abs().sqrt();
         let all = |x: Vec4| Vec4::new(of(x.x), of(x.y), of(x.z), of(x.w));
         Self {
             y,
@@ -113,41 +138,6 @@ impl Row {
             low: self.x.low * across + shared,
             high: self.x.high * across + shared,
         }
-    }
-
-    /// The farthest reaches among none.
-    #[inline]
-    #[must_use]
-    pub fn nothing() -> Reach {
-        let none = Bits {
-            x: i32::MIN,
-            y: i32::MIN,
-            z: i32::MIN,
-            w: i32::MIN,
-        };
-        Reach(Eight {
-            low: none,
-            high: none,
-        })
-    }
-
-    /// The farthest reaches among two more cones.
-    #[inline]
-    #[must_use]
-    pub fn farther(&self, so_far: Reach, first: Cone, second: Cone) -> Reach {
-        let (first, second) = (self.reach(first), self.reach(second));
-        Reach(Eight {
-            low: so_far.0.low.farther(first.low, second.low),
-            high: so_far.0.high.farther(first.high, second.high),
-        })
-    }
-
-    /// Whether any of the rays may meet any of the spheres.
-    #[inline]
-    #[must_use]
-    pub fn may_meet(&self, reach: Reach) -> bool {
-        let (low, high) = (reach.0.low, reach.0.high);
-        low.reaches(self.lengths.low) | high.reaches(self.lengths.high)
     }
 
     /// Which rays may meet which of four spheres: bit 31 − 8 i − k is ray k and sphere i.
@@ -183,65 +173,5 @@ impl Row {
             Vec2::new(half.z, half.w)
         };
         Vec2::new(if k & 1 == 0 { pair.x } else { pair.y }, self.y)
-    }
-}
-
-/// For each of eight rays, the farthest d·h.
-#[derive(Clone, Copy, Debug)]
-pub struct Reach(Eight<Bits>);
-
-/// Floats by their bits, compared as integers: that is their order where one of two is not negative, and
-/// one of those that are none is above all numbers.
-#[derive(Clone, Copy, Debug)]
-struct Bits {
-    x: i32,
-    y: i32,
-    z: i32,
-    w: i32,
-}
-
-impl Bits {
-    /// The larger of three, which newer GPUs find by one instruction.
-    #[inline]
-    fn farther(self, first: Vec4, second: Vec4) -> Self {
-        let of = |a, b: f32, c: f32| {
-            larger(
-                larger(a, b.to_bits().cast_signed()),
-                c.to_bits().cast_signed(),
-            )
-        };
-        Self {
-            x: of(self.x, first.x, second.x),
-            y: of(self.y, first.y, second.y),
-            z: of(self.z, first.z, second.z),
-            w: of(self.w, first.w, second.w),
-        }
-    }
-
-    /// Whether any is at least as large as its length. What is no number is.
-    #[inline]
-    fn reaches(self, lengths: Vec4) -> bool {
-        let number = |bits: i32| f32::from_bits(bits.cast_unsigned());
-        let is_short = (number(self.x) < lengths.x)
-            & (number(self.y) < lengths.y)
-            & (number(self.z) < lengths.z)
-            & (number(self.w) < lengths.w);
-        !is_short
-    }
-}
-
-/// |d|, or the least of all numbers where R, U and F are so far from a right angle, or so large, that the bound does not hold.
-#[inline]
-fn length(camera: &Camera, film: Vec2) -> f32 {
-    let Ray { direction, .. } = camera.ray(film);
-    let across = film.x * film.x * camera.right.dot(camera.right);
-    let upwards = film.y * film.y * camera.up.dot(camera.up);
-    let parts = camera.forward.dot(camera.forward) + across + upwards;
-    let squared = direction.dot(direction);
-    // (|F| + |x R| + |y U|)² is at most three times `parts`, and is to be at most four times `squared`.
-    if (parts <= squared * 1.33) & (squared > SMALLEST) & (squared < LARGEST) {
-        squared.sqrt()
-    } else {
-        f32::MIN
     }
 }

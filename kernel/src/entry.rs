@@ -4,18 +4,15 @@
 //! Bindings are in descriptor set 0, in the order of the parameters. Buffers are as long as
 //! the work; threads beyond it return.
 
-use glam::{UVec2, UVec3, Vec2, Vec4};
-use spirv_std::arch::{IndexUnchecked, atomic_i_add, workgroup_memory_barrier_with_group_sync};
-use spirv_std::memory::{Scope, Semantics};
+use glam::{UVec2, UVec3, Vec4};
+use spirv_std::arch::IndexUnchecked;
 use spirv_std::spirv;
 
+use crate::by_tiles::{ALL, LISTED, Shared, TILE, render_group};
 use crate::canary::{Operands, Outcome, sing};
 #[cfg(any(not(target_arch = "spirv"), feature = "f64"))]
 use crate::canary::{WideOutcome, sing_wide};
-use crate::cone::{Cone, Reach, Row};
 use crate::film::render_pixel;
-use crate::frustum::Frustum;
-use crate::instructions::{highest_bit, lowest_bit};
 use crate::integrate::{Scenery, trace_pixel};
 use crate::nearest::{is_occluded, nearest_hit_in};
 use crate::optics::{Fresnel, Incidence};
@@ -26,13 +23,9 @@ use crate::traversal::OneByOne;
 use crate::tree::{Node, is_occluded_in_tree, nearest_hit_in_tree};
 use crate::walk::{Walk, walk_inside};
 use crate::{
-    Accumulator, Camera, Effects, Hit, Launch, Light, Material, PathLaunch, Pixel, Ray, Sphere,
-    Surface, layout,
+    Accumulator, Effects, Hit, Launch, Light, Material, PathLaunch, Pixel, Ray, Sphere, Surface,
+    layout,
 };
-
-/// Whose memory an atomic operation is on, and that it orders no other.
-const WORKGROUP: u32 = Scope::Workgroup as u32;
-const RELAXED: u32 = Semantics::NONE.bits();
 
 /// Renders one launch: a tile of the image against a run of the spheres.
 #[spirv(compute(threads(8, 16), entry_point_name = "render"))]
@@ -52,38 +45,26 @@ pub fn render(
     if pixel.x < launch.tile_size.x && pixel.y < launch.tile_size.y {
         let index = (pixel.y * launch.tile_size.x + pixel.x) as usize;
         if index < pixels.len() {
-            pixels[index] = render_pixel(
-                shading,
-                rung,
-                has_tree,
-                launch,
-                nodes,
-                spheres,
-                material_ids,
-                materials,
-                pixel,
-                &pixels[index],
-            );
+            // SAFETY: as just asked.
+            unsafe {
+                *pixels.index_unchecked_mut(index) = render_pixel(
+                    shading,
+                    rung,
+                    has_tree,
+                    launch,
+                    nodes,
+                    spheres,
+                    material_ids,
+                    materials,
+                    pixel,
+                    pixels.index_unchecked(index),
+                );
+            }
         }
     }
 }
 
-/// Cones that a workgroup keeps at hand, and those that a thread looks at between two branches.
-const TILE: usize = 256;
-const STEP: u32 = 16;
-/// The threads of a workgroup for each tile, and the pixels of one row that each has.
-const GROUP: UVec2 = UVec2::new(4, 32);
-const THREADS: u32 = GROUP.x * GROUP.y;
-const PIXELS: u32 = 8;
-/// Pixels of a workgroup.
-const ALL: usize = (THREADS * PIXELS) as usize;
-/// Spheres that a thread looks at for its workgroup between two barriers; and how many a workgroup's list has room for.
-const LOOKS: u32 = 4;
-const LISTED: u32 = 768;
-
-/// [`render`] for many spheres without a tree. A workgroup makes a list of the spheres that any of its 32 by 32 pixels may see,
-/// of all there are. It works out once what these share of a sphere, and each thread goes through the list with eight of
-/// the pixels.
+/// [`render`] for many spheres without a tree; a thread has eight pixels of a row.
 #[spirv(compute(threads(4, 32), entry_point_name = "render_by_tiles"))]
 pub fn render_by_tiles(
     #[spirv(local_invocation_id)] local: UVec3,
@@ -95,248 +76,35 @@ pub fn render_by_tiles(
     #[spirv(storage_buffer, descriptor_set = 0, binding = 2)] material_ids: &[u32],
     #[spirv(storage_buffer, descriptor_set = 0, binding = 3)] materials: &[Material],
     #[spirv(storage_buffer, descriptor_set = 0, binding = 4)] pixels: &mut [Pixel],
+    #[spirv(workgroup)] planes: &mut [Vec4; 4],
+    #[spirv(workgroup)] is_square: &mut u32,
     #[spirv(workgroup)] listed: &mut u32,
-    #[spirv(workgroup)] list: &mut [u32; LISTED as usize],
+    #[spirv(workgroup)] list: &mut [u32; LISTED],
     #[spirv(workgroup)] tile: &mut [Vec4; TILE],
     #[spirv(workgroup)] nearest: &mut [f32; ALL],
     #[spirv(workgroup)] found: &mut [u32; ALL],
 ) {
-    let thread = local.y * GROUP.x + local.x;
-    let corner = UVec2::new(group.x * GROUP.x * PIXELS, group.y * GROUP.y);
-    let first_pixel = corner + local.truncate();
-    let frustum = {
-        let last = corner + UVec2::new(GROUP.x * PIXELS - 1, GROUP.y - 1);
-        let (first, last) = (film(launch, corner), film(launch, last));
-        let (low, high) = (Vec2::new(first.x, last.y), Vec2::new(last.x, first.y));
-        Frustum::around(&launch.camera, low, high)
+    let mut shared = Shared {
+        planes,
+        is_square,
+        listed,
+        list,
+        tile,
+        nearest,
+        found,
     };
-    let row = Row::of(
-        &launch.camera,
-        four_across(launch, first_pixel, 0),
-        four_across(launch, first_pixel, 4),
-        film(launch, first_pixel).y,
+    render_group(
+        group.truncate(),
+        local.truncate(),
+        shading,
+        rung,
+        launch,
+        spheres,
+        material_ids,
+        materials,
+        pixels,
+        &mut shared,
     );
-    // What each pixel has found is not kept in registers, of which there are few; no other thread looks at it.
-    let mut which = 0;
-    while which < PIXELS {
-        let place = (THREADS * which + thread) as usize;
-        // SAFETY: `place` is below the number of pixels.
-        unsafe {
-            *nearest.index_unchecked_mut(place) =
-                end_of(pixels, launch, pixel_of(first_pixel, which));
-            *found.index_unchecked_mut(place) = 0;
-        }
-        which += 1;
-    }
-    if thread == 0 {
-        *listed = 0;
-    }
-
-    let len = spheres.len() as u32;
-    let begin = launch.first_sphere.min(len);
-    let end = begin + launch.sphere_count.min(len - begin);
-    let mut first = begin;
-    // The bounds of the loops with barriers are the same for every thread of the workgroup.
-    while first < end {
-        workgroup_memory_barrier_with_group_sync();
-        // All are asked for before the first is looked at, so that a thread waits for memory once.
-        let mine = first + thread;
-        let one = look(spheres, end, mine);
-        let two = look(spheres, end, mine + THREADS);
-        let three = look(spheres, end, mine + 2 * THREADS);
-        let four = look(spheres, end, mine + 3 * THREADS);
-        let mut seen = u32::from(!frustum.misses(one) & (mine < end));
-        seen |= u32::from(!frustum.misses(two) & (mine + THREADS < end)) << 1;
-        seen |= u32::from(!frustum.misses(three) & (mine + 2 * THREADS < end)) << 2;
-        seen |= u32::from(!frustum.misses(four) & (mine + 3 * THREADS < end)) << 3;
-        while seen != 0 {
-            let which = lowest_bit(seen);
-            seen &= seen - 1;
-            // SAFETY: all threads count by atomic additions until they next meet.
-            let place = unsafe { atomic_i_add::<u32, WORKGROUP, RELAXED>(listed, 1) };
-            // SAFETY: there was room for as many spheres as are looked at.
-            unsafe { *list.index_unchecked_mut(place as usize) = mine + which * THREADS };
-        }
-        first += LOOKS * THREADS;
-        workgroup_memory_barrier_with_group_sync();
-        let count = *listed;
-        let is_due = (count > LISTED - LOOKS * THREADS) | (first >= end);
-        let mut base = 0;
-        while is_due & (base < count) {
-            workgroup_memory_barrier_with_group_sync();
-            let left = (count - base).min(TILE as u32);
-            let mut at = thread;
-            // Up to the end of a step.
-            while at < (left + STEP - 1) / STEP * STEP {
-                let mut cone = Cone::none();
-                if at < left {
-                    // SAFETY: below the number of those listed, and of spheres.
-                    let sphere = unsafe {
-                        let index = *list.index_unchecked((base + at) as usize);
-                        *spheres.index_unchecked(index as usize)
-                    };
-                    cone = Cone::of(sphere, &launch.camera);
-                }
-                // SAFETY: `at` is below the tile's size, which is a multiple of a step.
-                unsafe { *tile.index_unchecked_mut(at as usize) = cone.to_vec4() };
-                at += THREADS;
-            }
-            workgroup_memory_barrier_with_group_sync();
-            let mut at = 0;
-            while at < left {
-                let reach = farthest_of_four(tile, &row, Row::nothing(), at);
-                let reach = farthest_of_four(tile, &row, reach, at + 4);
-                let reach = farthest_of_four(tile, &row, reach, at + 8);
-                let reach = farthest_of_four(tile, &row, reach, at + 12);
-                if row.may_meet(reach) {
-                    let mut four = at;
-                    while four < at + STEP {
-                        let mut candidates = row.candidates(cones(tile, four));
-                        // The rung's code stands here once, for whichever ray.
-                        while candidates != 0 {
-                            let bit = highest_bit(candidates);
-                            candidates &= !(1 << bit);
-                            let which = (31 - bit) & 7;
-                            let at = four + (31 - bit) / 8;
-                            if at < left {
-                                let place = (THREADS * which + thread) as usize;
-                                // SAFETY: below the number of those listed, of spheres, and of pixels.
-                                let (index, sphere, nearest_t, nearest_sphere) = unsafe {
-                                    let index = *list.index_unchecked((base + at) as usize);
-                                    (
-                                        index,
-                                        *spheres.index_unchecked(index as usize),
-                                        *nearest.index_unchecked(place),
-                                        *found.index_unchecked(place),
-                                    )
-                                };
-                                let ray = launch.camera.ray(row.film(which));
-                                let t = intersect(rung, sphere, &ray);
-                                // Lists are in no order: of two at the same t the first of all spheres is taken.
-                                if (t < nearest_t) | ((t == nearest_t) & (index < nearest_sphere)) {
-                                    // SAFETY: as above.
-                                    unsafe {
-                                        *nearest.index_unchecked_mut(place) = t;
-                                        *found.index_unchecked_mut(place) = index;
-                                    }
-                                }
-                            }
-                        }
-                        four += 4;
-                    }
-                }
-                at += STEP;
-            }
-            base += TILE as u32;
-        }
-        // All know how many there were before the next are counted.
-        workgroup_memory_barrier_with_group_sync();
-        if is_due & (thread == 0) {
-            *listed = 0;
-        }
-    }
-
-    let mut which = 0;
-    while which < PIXELS {
-        let pixel = pixel_of(first_pixel, which);
-        let place = place_of(pixels.len(), launch, pixel);
-        if place < pixels.len() {
-            let ray = launch.ray(pixel, &pixels[place]);
-            let own = (THREADS * which + thread) as usize;
-            // SAFETY: `own` is below the number of pixels.
-            let (t, sphere) =
-                unsafe { (*nearest.index_unchecked(own), *found.index_unchecked(own)) };
-            let mut hit = Hit::NONE;
-            if t < ray.t_max {
-                hit = Hit { t, sphere };
-            }
-            pixels[place] = launch.pixel(
-                shading,
-                &ray,
-                hit,
-                spheres,
-                material_ids,
-                materials,
-                &pixels[place],
-            );
-        }
-        which += 1;
-    }
-}
-
-/// The sphere with this index, or the last of those up to `end`, of which there is one at least.
-#[inline]
-fn look(spheres: &[Sphere], end: u32, index: u32) -> Sphere {
-    // SAFETY: `end` is at most the number of spheres.
-    unsafe { *spheres.index_unchecked(index.min(end - 1) as usize) }
-}
-
-/// Four of the tile's cones; it is a multiple of four long, and so is `at`, which is below its end.
-#[inline]
-fn cones(tile: &[Vec4; TILE], at: u32) -> [Cone; 4] {
-    let at = at as usize;
-    // SAFETY: as said.
-    unsafe {
-        [
-            Cone::from_vec4(*tile.index_unchecked(at)),
-            Cone::from_vec4(*tile.index_unchecked(at + 1)),
-            Cone::from_vec4(*tile.index_unchecked(at + 2)),
-            Cone::from_vec4(*tile.index_unchecked(at + 3)),
-        ]
-    }
-}
-
-/// How far the rays of a row reach into four more cones.
-#[inline]
-fn farthest_of_four(tile: &[Vec4; TILE], row: &Row, so_far: Reach, at: u32) -> Reach {
-    let [first, second, third, fourth] = cones(tile, at);
-    row.farther(row.farther(so_far, first, second), third, fourth)
-}
-
-/// Where on the film a pixel of a launch is.
-#[inline]
-fn film(launch: &Launch, pixel: UVec2) -> Vec2 {
-    Camera::film(launch.tile_origin + pixel, launch.image_size)
-}
-
-/// How far to the right four of a thread's pixels are on the film.
-#[inline]
-fn four_across(launch: &Launch, first: UVec2, which: u32) -> Vec4 {
-    Vec4::new(
-        film(launch, pixel_of(first, which)).x,
-        film(launch, pixel_of(first, which + 1)).x,
-        film(launch, pixel_of(first, which + 2)).x,
-        film(launch, pixel_of(first, which + 3)).x,
-    )
-}
-
-/// Up to where the ray of a pixel is of interest: not farther than what it holds.
-#[inline]
-fn end_of(pixels: &[Pixel], launch: &Launch, pixel: UVec2) -> f32 {
-    let place = place_of(pixels.len(), launch, pixel);
-    if place < pixels.len() {
-        launch.ray(pixel, &pixels[place]).t_max
-    } else {
-        Hit::NONE_T
-    }
-}
-
-/// One of the pixels that a thread has: the others are to the right, as far apart as the workgroup is wide.
-#[inline]
-fn pixel_of(first: UVec2, which: u32) -> UVec2 {
-    first + UVec2::new(GROUP.x * which, 0)
-}
-
-/// Where a pixel of a launch is; `len` for one beyond the tile, which is traced for nothing because its
-/// thread must meet the others' barriers.
-#[inline]
-fn place_of(len: usize, launch: &Launch, pixel: UVec2) -> usize {
-    let is_inside = (pixel.x < launch.tile_size.x) & (pixel.y < launch.tile_size.y);
-    if is_inside {
-        (pixel.y * launch.tile_size.x + pixel.x) as usize
-    } else {
-        len
-    }
 }
 
 /// Adds samples to the pixels of a tile, by the effects that the pipeline holds.

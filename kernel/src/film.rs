@@ -132,7 +132,7 @@ pub fn render_pixel(
         spheres,
         material_ids,
         materials,
-        previous,
+        launch.unless_hit(previous),
     )
 }
 
@@ -150,8 +150,25 @@ impl Launch {
         ray
     }
 
-    /// What a pixel that holds `previous` must hold after its ray has found `hit`. The first launch of a tile does
-    /// not read it.
+    /// What a pixel that holds `previous` must hold if its ray hits nothing. The first launch of a tile does not read it.
+    #[inline]
+    #[must_use]
+    pub fn unless_hit(&self, previous: &Pixel) -> Pixel {
+        if self.first_of_tile == 0 {
+            *previous
+        } else {
+            self.blank()
+        }
+    }
+
+    /// A pixel without a sphere.
+    #[inline]
+    #[must_use]
+    pub fn blank(&self) -> Pixel {
+        Pixel::new(self.background, Hit::NONE_T)
+    }
+
+    /// What a pixel must hold after its ray has found `hit`, and `otherwise` if it found none.
     #[expect(
         clippy::too_many_arguments,
         reason = "these are the kernel's bindings, one each"
@@ -166,12 +183,9 @@ impl Launch {
         spheres: &[Sphere],
         material_ids: &[u32],
         materials: &[Material],
-        previous: &Pixel,
+        otherwise: Pixel,
     ) -> Pixel {
-        let mut result = Pixel::new(self.background, Hit::NONE_T);
-        if self.first_of_tile == 0 {
-            result = *previous;
-        }
+        let mut result = otherwise;
         if hit.is_some() {
             let index = hit.sphere as usize;
             // SAFETY: a hit names a sphere of the slice.

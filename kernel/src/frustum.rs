@@ -11,7 +11,7 @@
 //! That makes 144u o·o of s². What a rung calls a hit the exact numbers may miss by 24u (o·o + r²), as the rungs' modules say. r² is
 //! therefore taken more by 256u (o·o + r²), and no rung's hit is lost.
 
-use glam::{Vec2, Vec3};
+use glam::{Vec2, Vec3, Vec4};
 // On the CPU, std has `f32::sqrt`.
 #[cfg(target_arch = "spirv")]
 use spirv_std::num_traits::Float as _;
@@ -34,9 +34,44 @@ pub struct Frustum {
 
 /// A plane through the eye, by its inward normal of unit length; or, where rounding might decide which that is, none: zeros.
 #[derive(Clone, Copy, Debug)]
-struct Plane(Vec3);
+pub struct Plane(Vec3);
 
 impl Plane {
+    /// Of the four around the rays through the film from `low` to `high`: on the left, on the right, below, above.
+    #[inline]
+    #[must_use]
+    pub fn around(camera: &Camera, low: Vec2, high: Vec2, which: u32) -> Self {
+        let is_across = which < 2;
+        let is_high = which & 1 == 1;
+        let (across, axis) = if is_across {
+            (camera.right, camera.up)
+        } else {
+            (camera.up, camera.right)
+        };
+        let end = if is_high { high } else { low };
+        let offset = across * if is_across { end.x } else { end.y };
+        Self::of(
+            camera.forward,
+            offset,
+            axis,
+            if is_high { -across } else { across },
+        )
+    }
+
+    /// As one load.
+    #[inline]
+    #[must_use]
+    pub fn to_vec4(self) -> Vec4 {
+        self.0.extend(0.0)
+    }
+
+    /// Out of one load.
+    #[inline]
+    #[must_use]
+    pub fn from_vec4(vector: Vec4) -> Self {
+        Self(vector.truncate())
+    }
+
     /// Along the ray forward + offset and an axis of the film, with what is towards a direction inside.
     #[inline]
     fn of(forward: Vec3, offset: Vec3, axis: Vec3, towards: Vec3) -> Self {
@@ -64,19 +99,20 @@ impl Frustum {
     #[inline]
     #[must_use]
     pub fn around(camera: &Camera, low: Vec2, high: Vec2) -> Self {
-        let Camera {
-            eye,
-            forward,
-            right,
-            up,
-            ..
-        } = *camera;
+        let of = |which| Plane::around(camera, low, high, which);
+        Self::within(camera.eye, [of(0), of(1), of(2), of(3)])
+    }
+
+    /// Within the four planes around some rays from an eye.
+    #[inline]
+    #[must_use]
+    pub fn within(eye: Vec3, [left, right, below, above]: [Plane; 4]) -> Self {
         Self {
             eye,
-            left: Plane::of(forward, right * low.x, up, right),
-            right: Plane::of(forward, right * high.x, up, -right),
-            below: Plane::of(forward, up * low.y, right, up),
-            above: Plane::of(forward, up * high.y, right, -up),
+            left,
+            right,
+            below,
+            above,
         }
     }
 

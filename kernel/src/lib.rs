@@ -17,6 +17,7 @@
 //! | [`bounds`] | what few operations tell of a ray and a sphere for certain |
 //! | [`candidates`], [`cone`] | which of many spheres a rung must be asked about: by any ray, by a camera's |
 //! | [`frustum`] | which spheres none of a tile's rays meets |
+//! | `by_tiles` | brute force by workgroups, which share what their pixels do not need to know each, behind the feature `entry-points` |
 //! | [`tree`] | [`tree::Node`]: boxes around spheres, so that a ray looks at few |
 //! | [`traversal`] | what finds the hits of light paths |
 //! | [`surface`] | the point and the normal at a hit |
@@ -50,6 +51,8 @@
 
 pub mod arithmetic;
 pub mod bounds;
+#[cfg(feature = "entry-points")]
+mod by_tiles;
 pub mod camera;
 pub mod canary;
 pub mod candidates;

@@ -4,8 +4,8 @@
 // --variant plain:  one thread a pixel, spheres from global memory.
 // --variant tricks: a block lists the spheres that four planes around its 32 x 32 pixels let pass, and keeps them in shared
 //                   memory as the cones that they fill seen from the one origin (what a camera's axes make with
-//                   (C - O) / sqrt(o.o - r^2)): eight pixels of a row a thread, 16 spheres a step, two operations a test;
-//                   a ray that may hit solves for t as the renderer does.
+//                   (C - O) / sqrt(o.o - r^2)): eight pixels of a row a thread, four spheres a step; a ray that may hit solves for t
+//                   as the renderer does.
 #include "scene.h"
 
 // Each kernel writes what the renderer it is compared with writes: a colour and a depth.
@@ -34,15 +34,15 @@ __global__ void plain(Camera camera, int width, int height, int count, const flo
     pixels[y * width + x] = pixel(nearest);
 }
 
-constexpr int TILE = 256, RAYS = 8, WIDE = 4, HIGH = 32, THREADS = WIDE * HIGH, STEP = 16, FEW = 32 / RAYS;
-constexpr int LOOKS = 4, LISTED = 768;
+constexpr int RAYS = 8, WIDE = 4, HIGH = 32, THREADS = WIDE * HIGH, TILE = THREADS, STEP = 32 / RAYS;
+constexpr int LOOKS = 4, BATCH = LOOKS * THREADS, LISTED = BATCH + TILE;
 
 __device__ float dot(float3 a, float3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
 // What the camera's axes make with the sphere's centre, in units of the distance at which rays touch it.
 __device__ float4 cone(float4 s, const Camera &camera) {
     float3 o = make_float3(s.x - camera.eye.x, s.y - camera.eye.y, s.z - camera.eye.z);
-    float oo = dot(o, o), rr = s.w * s.w, c = (oo - rr) - (oo + rr) / (1 << 17);
+    float oo = dot(o, o), rr = s.w * s.w, c = (oo - rr) - (oo + rr) * (1.25f / (1 << 17));
     if (!(c > 1e-30f && c < 1e30f)) return make_float4(0.0f, 0.0f, 3.4e38f, 0.0f);
     float scale = rsqrtf(c);
     return make_float4(dot(camera.right, o) * scale, dot(camera.up, o) * scale, dot(camera.forward, o) * scale, 0.0f);
@@ -59,24 +59,13 @@ __device__ float3 plane(float3 forward, float3 offset, float3 axis, float3 towar
     return make_float3(n.x * scale, n.y * scale, n.z * scale);
 }
 
-__device__ float3 times(float3 v, float by) { return make_float3(v.x * by, v.y * by, v.z * by); }
-
-struct Frustum {
-    float3 left, right, below, above;
-
-    __device__ Frustum(const Camera &c, float left_x, float right_x, float below_y, float above_y)
-        : left(plane(c.forward, times(c.right, left_x), c.up, c.right)),
-          right(plane(c.forward, times(c.right, right_x), c.up, times(c.right, -1.0f))),
-          below(plane(c.forward, times(c.up, below_y), c.right, c.up)),
-          above(plane(c.forward, times(c.up, above_y), c.right, times(c.up, -1.0f))) {}
-
-    __device__ bool misses(float4 s, float3 eye) const {
-        float3 o = make_float3(s.x - eye.x, s.y - eye.y, s.z - eye.z);
-        float oo = dot(o, o), rr = s.w * s.w;
-        float farthest = fminf(fminf(dot(o, left), dot(o, right)), fminf(dot(o, below), dot(o, above)));
-        return farthest < 0.0f && farthest * farthest > rr + (oo + rr) / (1 << 16);
-    }
-};
+// Whether a sphere is beyond one of the planes.
+__device__ bool misses(const float3 planes[4], float4 s, float3 eye) {
+    float3 o = make_float3(s.x - eye.x, s.y - eye.y, s.z - eye.z);
+    float oo = dot(o, o), rr = s.w * s.w;
+    float farthest = fminf(fminf(dot(o, planes[0]), dot(o, planes[1])), fminf(dot(o, planes[2]), dot(o, planes[3])));
+    return farthest < 0.0f && farthest * farthest > rr + (oo + rr) / (1 << 16);
+}
 
 // The first hit, by the foot of the perpendicular.
 __device__ float solve(float4 s, float3 eye, float3 d) {
@@ -92,91 +81,80 @@ __device__ float solve(float4 s, float3 eye, float3 d) {
 
 __global__ void tricks(Camera camera, int width, int height, int count, const float4 *spheres,
                        float4 *pixels) {
+    __shared__ float3 around[4];
     __shared__ int listed, list[LISTED];
     __shared__ float4 tile[TILE];
     __shared__ float nearest[RAYS][THREADS];
     __shared__ int found[RAYS][THREADS];
-    int x = blockIdx.x * WIDE * RAYS + threadIdx.x, y = blockIdx.y * HIGH + threadIdx.y;
+    int corner_x = blockIdx.x * WIDE * RAYS, corner_y = blockIdx.y * HIGH;
+    int x = corner_x + threadIdx.x, y = corner_y + threadIdx.y;
     int thread = threadIdx.y * WIDE + threadIdx.x;
-    float across[RAYS], lengths[RAYS], up = (height - 2 * y - 1) / (float)height;
+    if (thread < 4) {
+        bool is_across = thread < 2;
+        float3 along = is_across ? camera.right : camera.up;
+        float left = film_x(corner_x, width), right = film_x(corner_x + WIDE * RAYS - 1, width);
+        float below = film_y(corner_y + HIGH - 1, height), above = film_y(corner_y, height);
+        float at = is_across ? (thread == 0 ? left : right) : (thread == 2 ? below : above);
+        around[thread] = plane(camera.forward, times(along, at), is_across ? camera.up : camera.right,
+                               times(along, thread % 2 == 0 ? 1.0f : -1.0f));
+    }
+    if (thread == 0) listed = 0;
+    float across[RAYS], lengths[RAYS], up = film_y(y, height);
+    float3 middle = make_float3(camera.forward.x + camera.up.x * up, camera.forward.y + camera.up.y * up,
+                                camera.forward.z + camera.up.z * up);
+    float mm = dot(middle, middle), mr = 2.0f * dot(middle, camera.right), rr = dot(camera.right, camera.right);
 #pragma unroll
     for (int ray = 0; ray < RAYS; ray++) {
-        across[ray] = (2 * (x + ray * WIDE) + 1 - width) / (float)width;
-        float3 d = direction(camera, x + ray * WIDE, y, width, height);
-        lengths[ray] = sqrtf(dot(d, d));
+        float at = across[ray] = film_x(x + ray * WIDE, width);
+        lengths[ray] = sqrtf(mm + at * (mr + at * rr));
         nearest[ray][thread] = 3.4e38f;
         found[ray][thread] = -1;
     }
-    int corner_x = blockIdx.x * WIDE * RAYS, corner_y = blockIdx.y * HIGH;
-    auto film_x = [&](int x) { return (2 * x + 1 - width) / (float)width; };
-    auto film_y = [&](int y) { return (height - 2 * y - 1) / (float)height; };
-    Frustum frustum(camera, film_x(corner_x), film_x(corner_x + WIDE * RAYS - 1), film_y(corner_y + HIGH - 1),
-                    film_y(corner_y));
-    if (thread == 0) listed = 0;
     for (int first = 0; first < count;) {
         __syncthreads();
+        float3 planes[4] = {around[0], around[1], around[2], around[3]};
+        int looks = first + THREADS < count ? LOOKS : 1;
         float4 look[LOOKS];
 #pragma unroll
-        for (int i = 0; i < LOOKS; i++) look[i] = spheres[min(first + thread + i * THREADS, count - 1)];
+        for (int i = 0; i < LOOKS; i++)
+            if (i < looks) look[i] = spheres[min(first + thread + i * THREADS, count - 1)];
 #pragma unroll
         for (int i = 0; i < LOOKS; i++) {
             int index = first + thread + i * THREADS;
-            if (index < count && !frustum.misses(look[i], camera.eye)) list[atomicAdd(&listed, 1)] = index;
+            if (i < looks && index < count && !misses(planes, look[i], camera.eye)) list[atomicAdd(&listed, 1)] = index;
         }
-        first += LOOKS * THREADS;
+        first += BATCH;
         __syncthreads();
-        int due = listed > LISTED - LOOKS * THREADS || first >= count ? listed : 0;
+        int due = listed > LISTED - BATCH || first >= count ? listed : 0;
         for (int base = 0; base < due; base += TILE) {
-            __syncthreads();
+            if (base > 0) __syncthreads();
             int left = min(due - base, TILE);
-            for (int i = thread; i < (left + STEP - 1) / STEP * STEP; i += THREADS)
-                tile[i] = i < left ? cone(spheres[list[base + i]], camera) : make_float4(0.0f, 0.0f, 0.0f, 0.0f);
+            tile[thread] = thread < left ? cone(spheres[list[base + thread]], camera) : make_float4(0.0f, 0.0f, 0.0f, 0.0f);
             __syncthreads();
             for (int i = 0; i < left; i += STEP) {
-                // As integers, of which three are compared by one instruction.
-                int farthest[RAYS];
+                unsigned misses = 0;
 #pragma unroll
-                for (int k = 0; k < STEP; k += 2) {
-                    float4 g = tile[i + k], h = tile[i + k + 1];
-                    float row_g = fmaf(up, g.y, g.z), row_h = fmaf(up, h.y, h.z);
+                for (int k = 0; k < STEP; k++) {
+                    float4 g = tile[i + k];
+                    float row = fmaf(up, g.y, g.z);
 #pragma unroll
                     for (int ray = 0; ray < RAYS; ray++) {
-                        int a = __float_as_int(fmaf(across[ray], g.x, row_g));
-                        int b = __float_as_int(fmaf(across[ray], h.x, row_h));
-                        farthest[ray] = k == 0 ? max(a, b) : max(max(farthest[ray], a), b);
+                        float by = fmaf(across[ray], g.x, row) - lengths[ray];
+                        misses = __funnelshift_l(__float_as_uint(by), misses, 1);
                     }
                 }
-                bool may_hit = false;
-#pragma unroll
-                for (int ray = 0; ray < RAYS; ray++) may_hit |= farthest[ray] >= __float_as_int(lengths[ray]);
-                if (!may_hit) continue;
-#pragma unroll 1
-                for (int few = i; few < i + STEP; few += FEW) {
-                    unsigned misses = 0;
-#pragma unroll
-                    for (int k = 0; k < FEW; k++) {
-                        float4 g = tile[few + k];
-                        float row = fmaf(up, g.y, g.z);
-#pragma unroll
-                        for (int ray = 0; ray < RAYS; ray++) {
-                            float by = fmaf(across[ray], g.x, row) - lengths[ray];
-                            misses = __funnelshift_l(__float_as_uint(by), misses, 1);
-                        }
-                    }
-                    for (unsigned rest = ~misses; rest != 0;) {
-                        int at = __clz(rest), ray = at % RAYS, place = few + at / RAYS;
-                        rest &= ~(0x80000000u >> at);
-                        if (place >= left) continue;
-                        int index = list[base + place];
-                        float3 d = direction(camera, x + ray * WIDE, y, width, height);
-                        float t = solve(spheres[index], camera.eye, d), before = nearest[ray][thread];
-                        if (t < before || (t == before && index < found[ray][thread]))
-                            nearest[ray][thread] = t, found[ray][thread] = index;
-                    }
+                for (unsigned rest = ~misses; rest != 0;) {
+                    int at = __clz(rest), ray = at % RAYS, place = i + at / RAYS;
+                    rest &= ~(0x80000000u >> at);
+                    if (place >= left) continue;
+                    int index = list[base + place];
+                    float3 d = direction(camera, x + ray * WIDE, y, width, height);
+                    float t = solve(spheres[index], camera.eye, d), before = nearest[ray][thread];
+                    if (t < before || (t == before && index < found[ray][thread]))
+                        nearest[ray][thread] = t, found[ray][thread] = index;
                 }
             }
         }
-        __syncthreads();
         if (due && thread == 0) listed = 0;
     }
 #pragma unroll
@@ -200,7 +178,7 @@ int main(int argc, char **argv) {
     dim3 block = with_tricks ? dim3(WIDE, HIGH) : dim3(8, 8);
     int columns = block.x * (with_tricks ? RAYS : 1);
     dim3 grid((width + columns - 1) / columns, (height + block.y - 1) / block.y);
-    double seconds = fastest(arguments.repeat, [&] {
+    double seconds = median(arguments.repeat, [&] {
         if (with_tricks) tricks<<<grid, block>>>(scene.camera, width, height, count, spheres, pixels);
         else plain<<<grid, block>>>(scene.camera, width, height, count, spheres, pixels);
     });

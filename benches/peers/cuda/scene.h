@@ -26,10 +26,15 @@ struct Camera {
     float3 eye, forward, right, up;
 };
 
+__host__ __device__ inline float3 times(float3 v, float by) { return make_float3(v.x * by, v.y * by, v.z * by); }
+
+// Where on the film a pixel's middle is: from -1 on the left to 1 on the right, and from 1 above to -1 below.
+__device__ inline float film_x(int x, int width) { return (2 * x + 1 - width) / (float)width; }
+__device__ inline float film_y(int y, int height) { return (height - 2 * y - 1) / (float)height; }
+
 // The direction through a pixel's middle, not of unit length.
 __device__ inline float3 direction(const Camera &camera, int x, int y, int width, int height) {
-    float u = (2 * x + 1 - width) / (float)width;
-    float v = (height - 2 * y - 1) / (float)height;
+    float u = film_x(x, width), v = film_y(y, height);
     return make_float3(camera.forward.x + camera.right.x * u + camera.up.x * v,
                        camera.forward.y + camera.right.y * u + camera.up.y * v,
                        camera.forward.z + camera.right.z * u + camera.up.z * v);
@@ -90,7 +95,6 @@ struct Scene {
             }
             return make_float3(values[0], values[1], values[2]);
         };
-        auto times = [](float3 v, float by) { return make_float3(v.x * by, v.y * by, v.z * by); };
         width = (int)numbers("width").x, height = (int)numbers("height").x;
         size_t at = meta.find("\"scene\":\"");
         name = at == std::string::npos ? "" : meta.substr(at + 9, meta.find('"', at + 9) - at - 9);
@@ -124,14 +128,15 @@ struct Arguments {
     }
 };
 
-// The fastest of `repeat` launches in seconds, after enough of them to bring the clock up.
+// The median of `repeat` launches in seconds, after enough of them to bring the clock up.
 template <class Launch>
-double fastest(int repeat, const Launch &launch) {
+double median(int repeat, const Launch &launch) {
     cudaEvent_t start, end;
     CHECK(cudaEventCreate(&start));
     CHECK(cudaEventCreate(&end));
-    double best = 1e30, warm = 0;
-    for (int round = 0; round < repeat; round += warm > 1.0) {
+    std::vector<double> times;
+    double warm = 0;
+    while ((int)times.size() < repeat) {
         CHECK(cudaEventRecord(start));
         launch();
         CHECK(cudaGetLastError());
@@ -139,10 +144,11 @@ double fastest(int repeat, const Launch &launch) {
         CHECK(cudaEventSynchronize(end));
         float milliseconds;
         CHECK(cudaEventElapsedTime(&milliseconds, start, end));
-        if (warm > 1.0) best = std::min(best, milliseconds * 1e-3);
+        if (warm > 1.0) times.push_back(milliseconds * 1e-3);
         warm += milliseconds * 1e-3;
     }
-    return best;
+    std::sort(times.begin(), times.end());
+    return times[times.size() / 2];
 }
 
 inline std::string kind_line(const std::string &kind, double seconds, size_t hits) {

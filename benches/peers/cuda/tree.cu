@@ -241,7 +241,7 @@ int main(int argc, char **argv) {
         float4 *pixels = upload(std::vector<float4>(is_primary ? count : 0));
         dim3 block(8, 8), grid((scene.width + 7) / 8, (scene.height + 7) / 8);
         unsigned groups = (unsigned)((count + 63) / 64);
-        double seconds = fastest(arguments.repeat, [&] {
+        double seconds = median(arguments.repeat, [&] {
             if (is_primary) primary<<<grid, block>>>(scene.camera, scene.width, scene.height, nodes, spheres, pixels);
             else if (any) each<true><<<groups, 64>>>(count, rays, nodes, spheres, hits);
             else each<false><<<groups, 64>>>(count, rays, nodes, spheres, hits);

@@ -7,6 +7,7 @@
 //! relative to the result by u at best.
 
 use super::DoubleSingle;
+use super::array::{get, set};
 use super::error_free::two_sum;
 use super::strict::add;
 
@@ -22,9 +23,9 @@ pub fn distill<const N: usize>(terms: &mut [f32; N]) -> DoubleSingle {
     while pass < PASSES {
         let mut index = 1;
         while index < N {
-            let (sum, error) = two_sum(terms[index], terms[index - 1]);
-            terms[index] = sum;
-            terms[index - 1] = error;
+            let (sum, error) = two_sum(get(terms, index), get(terms, index - 1));
+            set(terms, index, sum);
+            set(terms, index - 1, error);
             index += 1;
         }
         pass += 1;
@@ -32,9 +33,9 @@ pub fn distill<const N: usize>(terms: &mut [f32; N]) -> DoubleSingle {
     let mut rest = 0.0;
     let mut index = 0;
     while index < N - 1 {
-        rest = add(rest, terms[index]);
+        rest = add(rest, get(terms, index));
         index += 1;
     }
-    let (high, low) = two_sum(terms[N - 1], rest);
+    let (high, low) = two_sum(get(terms, N - 1), rest);
     DoubleSingle { high, low }
 }

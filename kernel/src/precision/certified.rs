@@ -29,6 +29,7 @@ use spirv_std::num_traits::Float as _;
 use super::compensated::Quadratic;
 use super::{Precision, choose_root};
 use crate::arithmetic::DoubleSingle;
+use crate::arithmetic::array::{get, set};
 use crate::arithmetic::distill::distill;
 use crate::arithmetic::error_free::two_product;
 use crate::arithmetic::strict::{add, sub};
@@ -141,9 +142,9 @@ fn distilled(pairs: &Quadratic) -> Quadratic {
     let mut b_terms = [0.0; 12];
     let mut axis = 0;
     while axis < 3 {
-        put_product(&mut a_terms, 2 * axis, d[axis], d[axis]);
-        put_product(&mut b_terms, 4 * axis, o[axis].high, d[axis]);
-        put_product(&mut b_terms, 4 * axis + 2, o[axis].low, d[axis]);
+        put_product(&mut a_terms, 2 * axis, get(&d, axis), get(&d, axis));
+        put_product(&mut b_terms, 4 * axis, get(&o, axis).high, get(&d, axis));
+        put_product(&mut b_terms, 4 * axis + 2, get(&o, axis).low, get(&d, axis));
         axis += 1;
     }
     let rr = two_product(r, r);
@@ -153,8 +154,8 @@ fn distilled(pairs: &Quadratic) -> Quadratic {
     let mut at = 0;
     let mut index = 0;
     while index < 6 {
-        put_product(&mut terms, at, a_terms[index], rr.0);
-        put_product(&mut terms, at + 2, a_terms[index], rr.1);
+        put_product(&mut terms, at, get(&a_terms, index), rr.0);
+        put_product(&mut terms, at + 2, get(&a_terms, index), rr.1);
         at += 4;
         index += 1;
     }
@@ -162,20 +163,20 @@ fn distilled(pairs: &Quadratic) -> Quadratic {
     while axis < 3 {
         let (y, z) = ((axis + 1) % 3, (axis + 2) % 3);
         let mut k = [0.0; 8];
-        put_product(&mut k, 0, o[y].high, d[z]);
-        put_product(&mut k, 2, o[y].low, d[z]);
-        let (negative_high, negative_low) = (sub(0.0, o[z].high), sub(0.0, o[z].low));
-        put_product(&mut k, 4, negative_high, d[y]);
-        put_product(&mut k, 6, negative_low, d[y]);
+        put_product(&mut k, 0, get(&o, y).high, get(&d, z));
+        put_product(&mut k, 2, get(&o, y).low, get(&d, z));
+        let (negative_high, negative_low) = (sub(0.0, get(&o, z).high), sub(0.0, get(&o, z).low));
+        put_product(&mut k, 4, negative_high, get(&d, y));
+        put_product(&mut k, 6, negative_low, get(&d, y));
         let mut first = 0;
         while first < 8 {
-            let negative = sub(0.0, k[first]);
-            put_product(&mut terms, at, negative, k[first]);
+            let negative = sub(0.0, get(&k, first));
+            put_product(&mut terms, at, negative, get(&k, first));
             at += 2;
             let twice = add(negative, negative);
             let mut second = first + 1;
             while second < 8 {
-                put_product(&mut terms, at, twice, k[second]);
+                put_product(&mut terms, at, twice, get(&k, second));
                 at += 2;
                 second += 1;
             }
@@ -199,15 +200,15 @@ fn distilled_c(pairs: &Quadratic) -> DoubleSingle {
     let mut terms = [0.0; 20];
     let mut axis = 0;
     while axis < 3 {
-        let o = pairs.o[axis];
+        let o = get(&pairs.o, axis);
         put_product(&mut terms, 6 * axis, o.high, o.high);
         put_product(&mut terms, 6 * axis + 2, add(o.high, o.high), o.low);
         put_product(&mut terms, 6 * axis + 4, o.low, o.low);
         axis += 1;
     }
     let rr = two_product(pairs.r, pairs.r);
-    terms[18] = sub(0.0, rr.0);
-    terms[19] = sub(0.0, rr.1);
+    set(&mut terms, 18, sub(0.0, rr.0));
+    set(&mut terms, 19, sub(0.0, rr.1));
     distill(&mut terms)
 }
 
@@ -215,6 +216,6 @@ fn distilled_c(pairs: &Quadratic) -> DoubleSingle {
 #[inline]
 fn put_product<const N: usize>(terms: &mut [f32; N], at: usize, a: f32, b: f32) {
     let DoubleSingle { high, low } = DoubleSingle::product(a, b);
-    terms[at] = high;
-    terms[at + 1] = low;
+    set(terms, at, high);
+    set(terms, at + 1, low);
 }

@@ -1,0 +1,20 @@
+//! Elements of small arrays, by indices that no compiler sees through, without a panic. Runs on the GPU and on the CPU.
+//!
+//! What might panic leaves its mark on all of a kernel: the thread gives up there, and every loop around it asks whether it has.
+
+use spirv_std::arch::IndexUnchecked;
+
+/// An element; the last for an index beyond it.
+#[inline]
+#[must_use]
+pub fn get<T: Copy, const N: usize>(array: &[T; N], index: usize) -> T {
+    // SAFETY: below N.
+    unsafe { *array.index_unchecked(index.min(N - 1)) }
+}
+
+/// Writes what [`get`] reads.
+#[inline]
+pub fn set<T, const N: usize>(array: &mut [T; N], index: usize, value: T) {
+    // SAFETY: below N.
+    unsafe { *array.index_unchecked_mut(index.min(N - 1)) = value };
+}
