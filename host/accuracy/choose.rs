@@ -14,10 +14,13 @@
 //! - `certified`: half a unit in the last place of t.
 
 use glam::DVec3;
+use rayon::prelude::*;
 use spherule_kernel::{Rung, Sphere};
 
 use crate::scene::Scene;
 
+/// Below this many spheres a thread goes on alone.
+const GRAIN: usize = 1 << 12;
 /// The tolerance when nothing is said, in pixels.
 pub const DEFAULT_TOLERANCE: f64 = 0.1;
 
@@ -55,9 +58,10 @@ pub fn choose(scene: &Scene, tolerance: f64, has_f64: bool) -> Choice {
         scene
             .world
             .spheres
-            .iter()
+            .par_iter()
+            .with_min_len(GRAIN)
             .map(|sphere| shift(rung, eye, sphere) / pixel)
-            .fold(0.0, f64::max)
+            .reduce(|| 0.0, f64::max)
     };
     let mut cheaper = None;
     for rung in order(has_f64) {
@@ -85,7 +89,7 @@ fn shift(rung: Rung, eye: DVec3, sphere: &Sphere) -> f64 {
     let o = (eye - center).length();
     let (oo, rr) = (o * o, r * r);
     let c = (oo - rr).abs();
-    let of_t = |u: f64| 8.0 * u * (oo + rr) * (o + r) / c.powf(1.5);
+    let of_t = |u: f64| 8.0 * u * (oo + rr) * (o + r) / (c * c.sqrt());
     let of_foot = |u: f64| 10.0 * u;
     let of_difference = single * eye.abs().max(center.abs()).max_element() / o;
     match rung {

@@ -1,6 +1,7 @@
 //! [`View`]: where the camera stands and where it looks.
 
 use glam::{DVec3, Vec3};
+use rayon::prelude::*;
 use spherule_kernel::{Camera, Sphere};
 
 /// A view, as a person describes one.
@@ -75,29 +76,39 @@ impl View {
 fn apex(spheres: &[Sphere], axis: usize, tangent: f64) -> (f64, f64) {
     let cosine = 1.0 / tangent.hypot(1.0);
     let sine = tangent * cosine;
-    let (mut low, mut high) = (f64::INFINITY, f64::INFINITY);
-    for sphere in spheres {
-        let center = sphere.center().as_dvec3();
-        let radius = f64::from(sphere.radius());
+    let (low, high) = least_of_each(spheres, |center, radius| {
         // Inward normals of the planes on the low and the high side: (±cos, −sin) along
         // (axis, z). The eye e must satisfy (center − e)·n ≥ radius for both.
-        low = low.min(center[axis] * cosine - center.z * sine - radius);
-        high = high.min(-center[axis] * cosine - center.z * sine - radius);
-    }
+        (
+            center[axis] * cosine - center.z * sine - radius,
+            -center[axis] * cosine - center.z * sine - radius,
+        )
+    });
     ((low - high) / (2.0 * cosine), -(low + high) / (2.0 * sine))
 }
 
 /// The z half-way between the nearest and the farthest point of the spheres.
 fn middle_z(spheres: &[Sphere]) -> f64 {
-    let (mut near, mut far) = (f64::NEG_INFINITY, f64::INFINITY);
-    for sphere in spheres {
-        let z = f64::from(sphere.center().z);
-        let radius = f64::from(sphere.radius());
-        near = near.max(z + radius);
-        far = far.min(z - radius);
-    }
-    0.5 * (near + far)
+    let (behind, far) = least_of_each(spheres, |center, radius| {
+        (-(center.z + radius), center.z - radius)
+    });
+    0.5 * (far - behind)
 }
+
+/// The least of the first and of the second of what `of` tells of each sphere's centre and radius; by all threads.
+fn least_of_each(spheres: &[Sphere], of: impl Fn(DVec3, f64) -> (f64, f64) + Sync) -> (f64, f64) {
+    spheres
+        .par_iter()
+        .with_min_len(GRAIN)
+        .map(|sphere| of(sphere.center().as_dvec3(), f64::from(sphere.radius())))
+        .reduce(
+            || (f64::INFINITY, f64::INFINITY),
+            |a, b| (a.0.min(b.0), a.1.min(b.1)),
+        )
+}
+
+/// Below this many spheres a thread goes on alone.
+const GRAIN: usize = 1 << 14;
 
 #[cfg(test)]
 mod tests {
