@@ -7,7 +7,7 @@
 //! relative to the result by u at best.
 
 use super::DoubleSingle;
-use super::array::{get, set};
+use super::elements::{get, set};
 use super::error_free::two_sum;
 use super::strict::add;
 

@@ -6,11 +6,11 @@
 //! | [`error_free`] | the exact error of a sum, a difference, a product |
 //! | [`distill`] | the sum of many floats, whatever cancels |
 //! | [`double_single`] | numbers as a sum of two floats, about 48 bits |
-//! | [`array`] | elements without a panic |
+//! | [`elements`] | elements without a panic |
 
-pub mod array;
 pub mod distill;
 pub mod double_single;
+pub mod elements;
 pub mod error_free;
 pub mod strict;
 
