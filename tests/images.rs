@@ -12,7 +12,8 @@ use spherule::device::GpuOptions;
 use spherule::film::compare::{Comparison, Tolerance};
 use spherule::kernel::{Camera, Hit, Launch, Material, Pixel, Shading, Sphere};
 use spherule::render::pace::Pace;
-use spherule::render::{self, QUIET};
+use spherule::render::{self, QUIET, Settings};
+use spherule::scene::tree::Acceleration;
 use spherule::scene::{View, World};
 use spherule::{Device, Image, Scene, wgpu};
 
@@ -265,21 +266,26 @@ fn splitting_changes_nothing() {
             },
         );
         let launch = launch_of(&scene);
-        let shading = Shading::Lit.into();
-        let prepare = |gpu| {
-            render::gpu::Prepared::new(gpu, &scene.world, shading).expect("a world on the GPU")
-        };
-        let (expected, _) =
-            render::gpu::render(&whole, &launch, &prepare(&whole), QUIET).expect("whole");
-        for (gpu, mut pace) in [
-            (&split, Pace::first_on(&split)),
-            (&whole, Pace::starting_at(97 * 20)),
-            (&whole, Pace::starting_at(50)),
-        ] {
-            let (pixels, _) =
-                render::gpu::render_paced(gpu, &launch, &prepare(gpu), QUIET, &mut pace)
-                    .expect("split");
-            assert!(pixels == expected, "{pace:?}");
+        for acceleration in [Acceleration::Tree, Acceleration::BruteForce] {
+            let settings = Settings {
+                acceleration,
+                ..Settings::from(Shading::Lit)
+            };
+            let prepare = |gpu| {
+                render::gpu::Prepared::new(gpu, &scene.world, settings).expect("a world on the GPU")
+            };
+            let (expected, _) =
+                render::gpu::render(&whole, &launch, &prepare(&whole), QUIET).expect("whole");
+            for (gpu, mut pace) in [
+                (&split, Pace::first_on(&split)),
+                (&whole, Pace::starting_at(97 * 20)),
+                (&whole, Pace::starting_at(50)),
+            ] {
+                let (pixels, _) =
+                    render::gpu::render_paced(gpu, &launch, &prepare(gpu), QUIET, &mut pace)
+                        .expect("split");
+                assert!(pixels == expected, "{acceleration:?} {pace:?}");
+            }
         }
     }
 }

@@ -2,7 +2,8 @@
 //!
 //! The rays of a square share their origin. Four planes through the eye and the sides of the square
 //! bound them all, so that boxes are tested once for 64 rays; the eight boxes of a node are tested side by side.
-//! Spheres that are left are tested against 16 rays side by side by the few operations of [`candidates`], and
+//! Four more planes along the square's middle tell which of its quarters a sphere may be seen in.
+//! There it is tested against 16 rays side by side by the few operations of [`candidates`], and
 //! only what may be a hit is asked about on its rung: on [`Rung::Robust`] and [`Rung::Double`] 16 rays side by side again, with the
 //! very operations of the kernel, in their order; on [`Rung::Compensated`] and [`Rung::Certified`] about the nearest at the end,
 //! and about what [`bounds`] leave open.
@@ -66,10 +67,11 @@ pub struct Packet {
 /// What bounds the rays of each square of an image: what a column or a row of squares shares is worked out once.
 #[derive(Clone, Debug)]
 pub struct Frusta {
-    /// Of each column of squares the planes on its left and its right.
-    columns: Vec<[Plane; 2]>,
-    /// Of each row of squares the planes above and below it.
-    rows: Vec<[Plane; 2]>,
+    /// Of each column of squares the planes on its left and its right, and between its halves: on the right of the left one, on the
+    /// left of the right one.
+    columns: Vec<[Plane; 4]>,
+    /// Of each row of squares the planes above and below it, below its upper half, and above its lower half.
+    rows: Vec<[Plane; 4]>,
     /// Where the pixels of each column and row of squares are on the film; those beyond the image are repeated ones.
     across: Vec<[f32; SIDE]>,
     upwards: Vec<[f32; SIDE]>,
@@ -95,13 +97,24 @@ impl Frusta {
         };
         let squares = |pixels: u32| (0..pixels).step_by(SIDE);
         let far = SIDE as u32 - 1;
+        let middle = SIDE as u32 / 2;
         let column = |x: u32| {
-            let normal = |x| (forward + right * f64::from(film(x, 0).x)).cross(up);
-            [plane(normal(x), right), plane(normal(x + far), -right)]
+            let at = |x| (forward + right * f64::from(film(x, 0).x)).cross(up);
+            [
+                plane(at(x), right),
+                plane(at(x + far), -right),
+                plane(at(x + middle - 1), -right),
+                plane(at(x + middle), right),
+            ]
         };
         let row = |y: u32| {
-            let normal = |y| (forward + up * f64::from(film(0, y).y)).cross(right);
-            [plane(normal(y), -up), plane(normal(y + far), up)]
+            let at = |y| (forward + up * f64::from(film(0, y).y)).cross(right);
+            [
+                plane(at(y), -up),
+                plane(at(y + far), up),
+                plane(at(y + middle - 1), up),
+                plane(at(y + middle), -up),
+            ]
         };
         let pixels = |first: u32| std::array::from_fn(|i| first + i as u32);
         let across = |x| pixels(x).map(|x| film(x, 0).x);
@@ -116,11 +129,20 @@ impl Frusta {
     }
 
     fn at(&self, corner: UVec2) -> Frustum {
-        let [left, right] = self.columns[corner.x as usize / SIDE];
-        let [above, below] = self.rows[corner.y as usize / SIDE];
+        let columns = self.columns[corner.x as usize / SIDE];
+        let rows = self.rows[corner.y as usize / SIDE];
+        let [left, right, of_left, of_right] = columns;
+        let [above, below, of_upper, of_lower] = rows;
+        let sides = [left, right, above, below];
+        let all = [
+            left, right, above, below, of_left, of_right, of_upper, of_lower,
+        ];
         Frustum {
-            planes: [left, right, above, below],
+            planes: sides,
             forward: self.forward,
+            x: all.map(|plane| plane.normal.x),
+            y: all.map(|plane| plane.normal.y),
+            z: all.map(|plane| plane.normal.z),
         }
     }
 }
@@ -132,6 +154,56 @@ struct Frustum {
     planes: [Plane; 4],
     /// The direction along which the rays' parameters are depths, and of each box what is nearest.
     forward: Plane,
+    /// The normals of these planes and of those between the halves: on the right of the left one, on the left of the right one,
+    /// below the upper one, above the lower one.
+    x: [f32; 8],
+    y: [f32; 8],
+    z: [f32; 8],
+}
+
+impl Frustum {
+    /// Without bounds.
+    const NONE: Self = Self {
+        planes: [Plane::NONE; 4],
+        forward: Plane::NONE,
+        x: [0.0; 8],
+        y: [0.0; 8],
+        z: [0.0; 8],
+    };
+
+    /// Which quarters of the square a sphere around `o`, told from the eye, may be seen in: a bit for each group of rays. It is as large
+    /// as `reach`, what it may be off by counted in.
+    #[inline(always)]
+    fn quarters(&self, o: Vec3, reach: f32) -> u32 {
+        /// By what is beyond the planes between the halves.
+        const LEFT: [u32; 16] = {
+            let mut left = [0; 16];
+            let mut beyond = 0;
+            while beyond < 16 {
+                let mut group = 0;
+                while group < GROUPS {
+                    let across = beyond >> (group % 2) & 1;
+                    let upwards = beyond >> (2 + group / 2) & 1;
+                    if across | upwards == 0 {
+                        left[beyond] |= 1 << group;
+                    }
+                    group += 1;
+                }
+                beyond += 1;
+            }
+            left
+        };
+        let along: [f32; 8] =
+            std::array::from_fn(|i| o.x * self.x[i] + o.y * self.y[i] + o.z * self.z[i]);
+        let mut beyond = 0;
+        for (plane, along) in along.iter().enumerate() {
+            beyond |= usize::from(*along < -reach) << plane;
+        }
+        if beyond & 15 != 0 {
+            return 0;
+        }
+        LEFT[beyond >> 4]
+    }
 }
 
 /// A direction, and which of a node's rows of sides make the corner of a box that is wanted.
@@ -142,6 +214,11 @@ struct Plane {
 }
 
 impl Plane {
+    const NONE: Self = Self {
+        normal: Vec3::ZERO,
+        rows: [0, 1, 2],
+    };
+
     fn farthest(normal: Vec3) -> Self {
         let row = |axis: usize| axis + if normal[axis] > 0.0 { 3 } else { 0 };
         Self {
@@ -208,10 +285,7 @@ impl Packet {
             has_bounds: false,
             end: [0.0; GROUPS],
             widening: 0.0,
-            frustum: Frustum {
-                planes: [Plane::farthest(Vec3::ZERO); 4],
-                forward: Plane::nearest(Vec3::ZERO),
-            },
+            frustum: Frustum::NONE,
         }
     }
 
@@ -278,7 +352,11 @@ impl Packet {
             let c = (oo - rr) - candidates::SLACK * (oo + rr);
             let off = (o.abs().element_sum() + radius) * SLACK + self.widening;
             let nearest = o.dot(self.frustum.forward.normal) - radius - off;
-            for group in 0..GROUPS {
+            // Of a normal's components the sum is two at most.
+            let mut quarters = self.frustum.quarters(o, radius + 2.0 * off);
+            while quarters != 0 {
+                let group = quarters.trailing_zeros() as usize;
+                quarters &= quarters - 1;
                 if nearest > self.end[group] {
                     continue;
                 }
