@@ -150,7 +150,11 @@ pub fn measure(
     let tracer = CpuTracer::new(spheres, plan.acceleration);
     let sets = RaySets::of(scene, &tracer, reach)?;
     let ids = size_of_val(&scene.world.material_ids[..]);
-    let bytes = (tracer.bytes() + ids) as f64 / spheres.len().max(1) as f64;
+    let held = match device {
+        Device::Cpu => tracer.bytes(),
+        Device::Gpu(_) => size_of_val(&spheres[..]) + size_of_val(tracer.nodes()),
+    };
+    let bytes = (held + ids) as f64 / spheres.len().max(1) as f64;
     let work = Kind::ALL.map(|kind| {
         let rays = sets.kind(kind);
         let work = tracer.work(plan.rung, kind.is_any(), rays);
