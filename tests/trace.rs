@@ -1,5 +1,7 @@
 //! The tree, the squares of camera rays and the tiles of brute force answer as testing every sphere does.
 
+use glam::Vec3;
+use spherule::Scene;
 use spherule::accuracy::cases::catalogue;
 use spherule::accuracy::families::Family;
 use spherule::accuracy::oracle::Intersection;
@@ -9,8 +11,10 @@ use spherule::bench::verify::verify;
 use spherule::device::{Device, GpuOptions};
 use spherule::kernel::nearest::nearest_hit_in;
 use spherule::kernel::tree::{Node, nearest_hit_in_tree};
-use spherule::kernel::{Hit, Ray, Rung, Shading, Sphere};
+use spherule::kernel::{Hit, Material, Pixel, Ray, Rung, Shading, Sphere};
+use spherule::render::pace::Pace;
 use spherule::render::{QUIET, Settings, cpu, whole_image};
+use spherule::scene::World;
 use spherule::scene::tree::Acceleration;
 use spherule::trace::CpuTracer;
 use spherule::trace::single::Single;
@@ -208,6 +212,49 @@ fn tiles_find_what_the_cpu_finds() {
                     gpu.name()
                 );
             }
+        }
+    }
+}
+
+/// Of two spheres in one place the first of all is seen, in whatever order they are listed, and in whatever launch.
+#[test]
+fn tiles_take_the_first_of_equals() {
+    if skips("tiles_take_the_first_of_equals") {
+        return;
+    }
+    let mut world = World::default();
+    let green = world.add_material(Material::diffuse(Vec3::Y));
+    let red = world.add_material(Material::diffuse(Vec3::X));
+    for material in [green, red] {
+        for index in 0..600 {
+            let (x, y) = (index % 30 - 15, index / 30 - 10);
+            world.add(
+                Sphere::new(Vec3::new(x as f32, y as f32, -40.0), 0.6),
+                material,
+            );
+        }
+    }
+    let mut scene = Scene::new(world);
+    (scene.width, scene.height) = (150, 100);
+    scene.background = Vec3::ZERO;
+    let launch = whole_image(&scene).expect("a launch");
+    for gpu in gpus() {
+        let settings = Settings {
+            acceleration: Acceleration::BruteForce,
+            ..Settings::from((Shading::Lit, Rung::Robust))
+        };
+        for pace in [Pace::first_on(gpu), Pace::starting_at(1)] {
+            let world =
+                spherule::render::gpu::Prepared::new(gpu, &scene.world, settings).expect("a world");
+            let (pixels, _) =
+                spherule::render::gpu::render_paced(gpu, &launch, &world, QUIET, &mut { pace })
+                    .expect("an image");
+            let count = |of: fn(Vec3) -> bool| {
+                let colors = pixels.iter().map(Pixel::color);
+                colors.filter(|color| of(*color)).count()
+            };
+            assert!(count(|color| color.y > 0.0) > 8000, "few are seen");
+            assert_eq!(count(|color| color.x > 0.0), 0, "on {}", gpu.name());
         }
     }
 }
