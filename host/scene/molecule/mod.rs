@@ -8,6 +8,7 @@ pub mod xyz;
 use std::path::Path;
 
 use glam::Vec3;
+use rayon::prelude::*;
 use spherule_kernel::{Material, Sphere};
 
 use super::{World, extension, read_text};
@@ -51,8 +52,6 @@ pub fn load(path: &Path) -> Result<World> {
 #[must_use]
 pub fn world(atoms: &[Atom]) -> World {
     let mut world = World::default();
-    // Few, so that looking through them is fastest.
-    let mut ids: Vec<(&str, u32)> = Vec::new();
     let unknown = atoms
         .iter()
         .filter(|atom| atom.element.symbol == elements::UNKNOWN.symbol)
@@ -63,20 +62,30 @@ pub fn world(atoms: &[Atom]) -> World {
             elements::UNKNOWN.radius
         );
     }
-    for atom in atoms {
-        let element = atom.element;
-        let known = ids.iter().find(|(symbol, _)| *symbol == element.symbol);
-        let id = if let Some((_, id)) = known {
-            *id
-        } else {
+    // In the order in which they occur; few, so that looking through them is fastest.
+    let mut ids: Vec<(&str, u32)> = Vec::new();
+    for element in atoms.iter().map(|atom| atom.element) {
+        if !ids.iter().any(|(symbol, _)| *symbol == element.symbol) {
             let id = world.add_material(Material::diffuse(linear(element.color)));
             ids.push((element.symbol, id));
-            id
-        };
-        world.add(Sphere::new(atom.position, atom.element.radius), id);
+        }
     }
+    let id_of = |atom: &Atom| {
+        let known = ids
+            .iter()
+            .find(|(symbol, _)| *symbol == atom.element.symbol);
+        known.map_or(0, |(_, id)| *id)
+    };
+    let atoms = || atoms.par_iter().with_min_len(GRAIN);
+    world.spheres = atoms()
+        .map(|atom| Sphere::new(atom.position, atom.element.radius))
+        .collect();
+    world.material_ids = atoms().map(id_of).collect();
     world
 }
+
+/// Below this many atoms a thread goes on alone.
+const GRAIN: usize = 1 << 14;
 
 /// What is wrong with a line of a molecule file.
 #[derive(Debug)]
