@@ -18,9 +18,8 @@ use rayon::prelude::*;
 use spherule_kernel::{Rung, Sphere};
 
 use crate::scene::Scene;
+use crate::scene::world::GRAIN;
 
-/// Below this many spheres a thread goes on alone.
-const GRAIN: usize = 1 << 12;
 /// The tolerance when nothing is said, in pixels.
 pub const DEFAULT_TOLERANCE: f64 = 0.1;
 

@@ -149,26 +149,22 @@ pub fn measure(
     let (seconds, spread) = median(&mut builds);
     let tracer = CpuTracer::new(spheres, plan.acceleration);
     let sets = RaySets::of(scene, &tracer, reach)?;
-    let ids = size_of_val(&scene.world.material_ids[..]);
-    let held = match device {
-        Device::Cpu => tracer.bytes(),
-        Device::Gpu(_) => size_of_val(&spheres[..]) + size_of_val(tracer.nodes()),
-    };
-    let bytes = (held + ids) as f64 / spheres.len().max(1) as f64;
     let work = Kind::ALL.map(|kind| {
         let rays = sets.kind(kind);
         let work = tracer.work(plan.rung, kind.is_any(), rays);
         let a_ray = |sum: u64| sum as f64 / rays.len().max(1) as f64;
         work.map(|(nodes, spheres)| (a_ray(nodes), a_ray(spheres)))
     });
-    let mut speeds = match device {
-        Device::Cpu => on_cpu(&tracer, scene, &sets, plan)?,
+    let (held, mut speeds) = match device {
+        Device::Cpu => (tracer.bytes(), on_cpu(&tracer, scene, &sets, plan)?),
         Device::Gpu(gpu) => {
             drop(tracer);
             let tracer = GpuTracer::new(gpu, spheres, plan.acceleration)?;
-            on_gpu(gpu, &tracer, scene, &sets, plan)?
+            (tracer.bytes(), on_gpu(gpu, &tracer, scene, &sets, plan)?)
         }
     };
+    let ids = size_of_val(&scene.world.material_ids[..]);
+    let bytes = (held + ids) as f64 / spheres.len().max(1) as f64;
     for ((speed, work), kind) in speeds.iter_mut().zip(work).zip(Kind::ALL) {
         speed.nodes_per_ray = work.map(|(nodes, _)| nodes);
         speed.spheres_per_ray = work.map(|(_, spheres)| spheres);

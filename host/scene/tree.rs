@@ -15,7 +15,7 @@ use rayon::prelude::*;
 use spherule_kernel::Sphere;
 use spherule_kernel::tree::{Extent, Node};
 
-use super::World;
+use super::world::{GRAIN, World};
 
 /// Bins along an axis, for many spheres and for few.
 const BINS: usize = 16;
@@ -23,8 +23,6 @@ const FEW_BINS: usize = 8;
 const FEW: usize = 256;
 /// The most spheres of a node without nodes in it.
 const FULL: usize = Node::WIDTH * Node::MAX_LEAF;
-/// Below this many spheres a thread goes on alone.
-const GRAIN: usize = 1 << 13;
 /// From this many spheres on, threads share the work on one node.
 const SHARED: usize = 1 << 16;
 /// Beyond this depth nodes are halved, whatever that costs a ray: 8¹² is more than there can be.
@@ -147,12 +145,11 @@ impl Bounds {
             .fold(Self::EMPTY, |bounds, item| bounds.with(item.bounds()))
     }
 
-    /// And of twice their middles.
-    fn of_all_and_middles(items: &[Item]) -> (Self, Self) {
-        let middles = items
+    /// Of twice their middles.
+    fn of_middles(items: &[Item]) -> Self {
+        items
             .iter()
-            .fold(Self::EMPTY, |bounds, item| bounds.with_point(item.middle()));
-        (Self::of_all(items), middles)
+            .fold(Self::EMPTY, |bounds, item| bounds.with_point(item.middle()))
     }
 
     fn with_point(self, point: Vec4) -> Self {
@@ -245,7 +242,7 @@ pub fn grow(
     }
     let (bounds, middles) = items
         .par_chunks(GRAIN)
-        .map(Bounds::of_all_and_middles)
+        .map(|items| (Bounds::of_all(items), Bounds::of_middles(items)))
         .reduce(
             || (Bounds::EMPTY, Bounds::EMPTY),
             |a, b| (a.0.with(b.0), a.1.with(b.1)),
@@ -536,7 +533,7 @@ fn sort_by_middle(items: &mut [Item], axis: usize) {
 }
 
 fn widest_axis(items: &[Item], weights: Vec3) -> usize {
-    let (_, middles) = Bounds::of_all_and_middles(items);
+    let middles = Bounds::of_middles(items);
     ((middles.high - middles.low).truncate() * weights).max_position()
 }
 
@@ -570,7 +567,7 @@ fn split(part: Part<'_>, depth: usize) -> (Part<'_>, Part<'_>) {
         order.then(a.index().cmp(&b.index()))
     });
     let (left, right) = items.split_at(middle);
-    let sides = [left, right].map(Bounds::of_all_and_middles);
+    let sides = [left, right].map(|side| (Bounds::of_all(side), Bounds::of_middles(side)));
     halves(items, scratch, middle, sides, weights)
 }
 

@@ -4,6 +4,8 @@ use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 use spherule_kernel::{Camera, Sphere};
 
+use super::world::GRAIN;
+
 /// A view, as a person describes one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View {
@@ -106,9 +108,6 @@ fn least_of_each(spheres: &[Sphere], of: impl Fn(DVec3, f64) -> (f64, f64) + Syn
             |a, b| (a.0.min(b.0), a.1.min(b.1)),
         )
 }
-
-/// Below this many spheres a thread goes on alone.
-const GRAIN: usize = 1 << 14;
 
 #[cfg(test)]
 mod tests {

@@ -3,6 +3,9 @@
 use glam::Vec3;
 use spherule_kernel::{Material, Sphere};
 
+/// Below this many spheres a thread goes on alone.
+pub(crate) const GRAIN: usize = 1 << 13;
+
 /// A world of spheres, made on the host out of the device's own types and uploaded as it is.
 ///
 /// ```

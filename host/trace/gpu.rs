@@ -57,6 +57,13 @@ impl<'a> GpuTracer<'a> {
         )
     }
 
+    /// The memory that tracing takes, in bytes.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        let nodes = self.nodes.as_ref().map_or(0, Buffer::len);
+        self.spheres.len() * size_of::<Sphere>() + nodes * size_of::<Node>()
+    }
+
     /// Uploads rays.
     ///
     /// # Errors

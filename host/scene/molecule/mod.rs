@@ -11,7 +11,8 @@ use glam::Vec3;
 use rayon::prelude::*;
 use spherule_kernel::{Material, Sphere};
 
-use super::{World, extension, read_text};
+use super::world::{GRAIN, World};
+use super::{extension, read_text};
 use crate::error::{Error, Place, Result, SceneError};
 use elements::Element;
 
@@ -83,9 +84,6 @@ pub fn world(atoms: &[Atom]) -> World {
     world.material_ids = atoms().map(id_of).collect();
     world
 }
-
-/// Below this many atoms a thread goes on alone.
-const GRAIN: usize = 1 << 14;
 
 /// What is wrong with a line of a molecule file.
 #[derive(Debug)]
