@@ -98,11 +98,11 @@ def mitsuba(cache):
     return [sys.executable, HERE / "mitsuba3.py"]
 
 
-def cuda(name):
+def cuda(name, *flags):
     def prepare(cache):
         on_path("nvcc", "it comes with NVIDIA's CUDA toolkit")
-        out = cache / f"cuda-{name}"
-        call("nvcc", "-O3", "-std=c++17", "-arch=native", "-o", out, HERE / f"cuda/{name}.cu")
+        out = cache / "".join(["cuda-", name, *flags])
+        call("nvcc", "-O3", "-std=c++17", "-arch=native", *flags, "-o", out, HERE / f"cuda/{name}.cu")
         return [out]
 
     return prepare
@@ -126,6 +126,7 @@ ON_GPU = {
     "cuda-tree": (cuda("tree"), []),
     "cuda-brute-plain": (cuda("brute"), ["--variant", "plain"]),
     "cuda-brute-tricks": (cuda("brute"), ["--variant", "tricks"]),
+    "cuda-brute-fast-tricks": (cuda("brute", "-use_fast_math"), ["--variant", "tricks"]),
 }
 
 

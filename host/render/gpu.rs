@@ -5,6 +5,7 @@ use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use glam::UVec2;
+use spherule_kernel::film::TILE;
 use spherule_kernel::tree::Node;
 use spherule_kernel::{Launch, Material, Pixel, Shading, Sphere};
 
@@ -292,14 +293,13 @@ fn render_tile(
                 part.material_ids.binding(),
                 world.materials.binding(),
             ];
-            // A thread has eight pixels of a row.
-            let mut threads = [tile.x.div_ceil(8), tile.y, 1];
-            if world.search != Search::Lists {
+            let groups = if world.search == Search::Lists {
+                [tile.x.div_ceil(TILE), tile.y.div_ceil(TILE), 1]
+            } else {
                 bindings.push(part.nodes.binding());
-                threads = [tile.x, tile.y, 1];
-            }
+                world.kernel.workgroups_for([tile.x, tile.y, 1])
+            };
             bindings.push(target.pixels.binding());
-            let groups = world.kernel.workgroups_for(threads);
             let time = gpu.launch(&world.kernel, &bindings, groups)?;
             let work = world.search.work(launch.sphere_count.into());
             pace.learn(pixels * work, time.best());

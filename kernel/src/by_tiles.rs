@@ -1,30 +1,34 @@
-//! Brute force on a GPU: a workgroup makes a list of the spheres that any of its pixels may see, of all there are, and each of its
-//! threads goes through the list with eight pixels. Runs on the GPU.
+//! Brute force on a GPU: a workgroup lists the spheres that any of its pixels may see, of all there are, and each of its
+//! threads goes through the list for four pixels, one after the other. Runs on the GPU.
 
 use glam::{UVec2, Vec2, Vec4};
 use spirv_std::arch::{IndexUnchecked, atomic_i_add, workgroup_memory_barrier_with_group_sync};
 use spirv_std::memory::{Scope, Semantics};
 
-use crate::cone::{Cone, Row, is_square};
+use crate::cone::{Cone, Sight};
+use crate::film::TILE;
 use crate::frustum::{Frustum, Plane};
 use crate::instructions::{highest_bit, lowest_bit};
 use crate::precision::intersect;
 use crate::{Camera, Hit, Launch, Material, Pixel, Sphere};
 
-/// The threads of a workgroup for each tile, and the pixels of one row that each has.
-pub const GROUP: UVec2 = UVec2::new(4, 32);
+/// The threads of a workgroup for each tile.
+pub const GROUP: UVec2 = UVec2::new(8, 32);
 const THREADS: u32 = GROUP.x * GROUP.y;
-const PIXELS: u32 = 8;
-/// Pixels of a workgroup.
-pub const ALL: usize = (THREADS * PIXELS) as usize;
-/// Cones that a workgroup keeps at hand: one of each thread's making.
-pub const TILE: usize = THREADS as usize;
-/// Cones that a thread looks at between two branches.
-const STEP: u32 = 4;
-/// Spheres that a workgroup looks at between two barriers, each thread at four.
-const BATCH: u32 = 4 * THREADS;
+/// Each 32 threads have 8 × 4 pixels at a time, and four times as many stand side by side.
+const BLOCK: UVec2 = UVec2::new(8, 4);
+const ABREAST: u32 = TILE / BLOCK.x;
+/// Rows of pixels that a workgroup has at a time.
+const ROWS: u32 = THREADS / TILE;
 /// How many spheres a list has room for. What a workgroup shares decides how many of them a multiprocessor holds.
-pub const LISTED: usize = BATCH as usize + TILE;
+pub const LISTED: usize = 256;
+/// Spheres that a workgroup looks at between two barriers, at most. If a list has no room for those that are seen, it looks at a fourth of as many,
+const BATCH: u32 = 1 << 14;
+/// but not at fewer than this, which fit into half a list.
+const SMALL_BATCH: u32 = LISTED as u32 / 2;
+/// Cones that a thread looks at between two branches, and before it asks the rung.
+const STEP: u32 = 4;
+const BITS: u32 = u32::BITS;
 /// Whose memory an atomic operation is on, and that it orders no other.
 const WORKGROUP: u32 = Scope::Workgroup as u32;
 const RELAXED: u32 = Semantics::NONE.bits();
@@ -33,19 +37,14 @@ const RELAXED: u32 = Semantics::NONE.bits();
 pub struct Shared<'a> {
     /// Around the rays of all of its pixels.
     pub planes: &'a mut [Vec4; 4],
-    /// 1 if the bounds of cones hold.
-    pub is_square: &'a mut u32,
-    /// How many spheres are listed.
+    /// How many spheres are listed, or would be if there were room.
     pub listed: &'a mut u32,
-    /// The spheres that may be seen, by their indices, in no order.
+    /// The spheres that may be seen, by their indices. Those of one batch are in no order.
     pub list: &'a mut [u32; LISTED],
-    /// The cones of some of them.
-    pub tile: &'a mut [Vec4; TILE],
-    /// For each pixel where its ray meets the nearest sphere so far, and which that is. A thread looks at its own pixels only; they are
-    /// here because registers are few.
-    pub nearest: &'a mut [f32; ALL],
-    /// See `nearest`.
-    pub found: &'a mut [u32; ALL],
+    /// They themselves.
+    pub spheres: &'a mut [Sphere; LISTED],
+    /// Their cones.
+    pub cones: &'a mut [Vec4; LISTED],
 }
 
 /// Renders the pixels of one workgroup of a launch.
@@ -67,57 +66,29 @@ pub fn render_group(
     shared: &mut Shared<'_>,
 ) {
     let thread = local.y * GROUP.x + local.x;
-    let corner = UVec2::new(group.x * GROUP.x * PIXELS, group.y * GROUP.y);
-    let first_pixel = corner + local;
+    let corner = UVec2::new(group.x, from_the_middle(group.y, launch.tile_size.y)) * TILE;
+    let block = UVec2::new(local.y / BLOCK.y % ABREAST, local.y / BLOCK.y / ABREAST);
+    let first_pixel = corner + block * BLOCK + UVec2::new(local.x, local.y % BLOCK.y);
+    let across = film(launch, first_pixel).x;
     if thread < 4 {
-        let last = corner + UVec2::new(GROUP.x * PIXELS - 1, GROUP.y - 1);
-        let (first, last) = (film(launch, corner), film(launch, last));
+        let (first, last) = (film(launch, corner), film(launch, corner + (TILE - 1)));
         let (low, high) = (Vec2::new(first.x, last.y), Vec2::new(last.x, first.y));
         let plane = Plane::around(&launch.camera, low, high, thread);
         // SAFETY: there are four.
         unsafe { *shared.planes.index_unchecked_mut(thread as usize) = plane.to_vec4() };
     }
     if thread == 0 {
-        *shared.is_square = u32::from(is_square(&launch.camera));
         *shared.listed = 0;
-    }
-    let row = Row::of(
-        &launch.camera,
-        four_across(launch, first_pixel, 0),
-        four_across(launch, first_pixel, 4),
-        film(launch, first_pixel).y,
-    );
-    let mut which = 0;
-    while which < PIXELS {
-        let own = (THREADS * which + thread) as usize;
-        // SAFETY: `own` is below the number of pixels.
-        unsafe {
-            *shared.nearest.index_unchecked_mut(own) = Hit::NONE_T;
-            *shared.found.index_unchecked_mut(own) = 0;
-        }
-        which += 1;
-    }
-    let strip = Strip::of(launch, first_pixel, pixels.len() as u32);
-    let is_continued = launch.first_of_tile == 0;
-    if is_continued {
-        let mut which = 0;
-        while which < strip.count {
-            let own = (THREADS * which + thread) as usize;
-            // SAFETY: `own` is below the number of pixels, and the strip is within them.
-            unsafe {
-                let previous = pixels.index_unchecked(strip.place(which));
-                *shared.nearest.index_unchecked_mut(own) = previous.depth();
-            }
-            which += 1;
-        }
     }
 
     let len = spheres.len() as u32;
-    let begin = launch.first_sphere.min(len);
-    let end = begin + launch.sphere_count.min(len - begin);
-    let mut first = begin;
-    // The bounds of the loops with barriers are the same for every thread of the workgroup.
-    while first < end {
+    let mut first = launch.first_sphere.min(len);
+    let end = first + launch.sphere_count.min(len - first);
+    let mut is_continued = launch.first_of_tile == 0;
+    let mut batch = BATCH;
+    let mut before = 0;
+    // The bounds of the loop are the same for every thread of the workgroup.
+    loop {
         workgroup_memory_barrier_with_group_sync();
         let planes = [
             Plane::from_vec4(shared.planes[0]),
@@ -126,241 +97,237 @@ pub fn render_group(
             Plane::from_vec4(shared.planes[3]),
         ];
         let frustum = Frustum::within(launch.camera.eye, planes);
-        list_seen(&frustum, spheres, first, end, thread, shared);
-        first += BATCH;
+        let stop = first + batch.min(end - first);
+        list_seen(&frustum, spheres, first, stop, thread, shared);
         workgroup_memory_barrier_with_group_sync();
-        let count = *shared.listed;
-        if (count > LISTED as u32 - BATCH) | (first >= end) {
-            let mut base = 0;
-            while base < count {
-                if base > 0 {
-                    workgroup_memory_barrier_with_group_sync();
-                }
-                let left = (count - base).min(TILE as u32);
-                put_cone(launch, spheres, base, left, thread, shared);
-                workgroup_memory_barrier_with_group_sync();
-                let mut at = 0;
-                while at < left {
-                    ask(rung, launch, spheres, &row, base, at, left, thread, shared);
-                    at += STEP;
-                }
-                base += TILE as u32;
-            }
-            // All know how many there were: they have met since, if there were any.
+        let mut count = *shared.listed;
+        let mut is_due = true;
+        if count > LISTED as u32 {
+            // What was listed before this batch is still there; the batch is looked at again.
+            count = before;
+            batch = SMALL_BATCH.max(batch / 4);
+        } else {
+            first = stop;
+            before = count;
+            batch = BATCH.min(batch * 2);
+            is_due = (count > LISTED as u32 - SMALL_BATCH) | (first >= end);
+        }
+        if is_due {
+            put_cones(launch, spheres, count, thread, shared);
+            workgroup_memory_barrier_with_group_sync();
+            // All know how many there were.
             if thread == 0 {
                 *shared.listed = 0;
             }
-        }
-    }
-
-    let mut which = 0;
-    while which < strip.count {
-        let own = (THREADS * which + thread) as usize;
-        let place = strip.place(which);
-        // SAFETY: `own` is below the number of pixels, and the strip is within them.
-        let (t, sphere, end) = unsafe {
-            let mut end = Hit::NONE_T;
-            if is_continued {
-                end = pixels.index_unchecked(place).depth();
+            before = 0;
+            let mut row = 0;
+            while row < TILE {
+                let pixel = first_pixel + UVec2::new(0, row);
+                render_listed(
+                    pixel,
+                    across,
+                    count,
+                    is_continued,
+                    shading,
+                    rung,
+                    launch,
+                    spheres,
+                    material_ids,
+                    materials,
+                    pixels,
+                    shared,
+                );
+                row += ROWS;
             }
-            (
-                *shared.nearest.index_unchecked(own),
-                *shared.found.index_unchecked(own),
-                end,
-            )
-        };
-        // What a pixel has from an earlier launch it keeps.
-        if !is_continued | (t < end) {
-            let hit = if t < end {
-                Hit { t, sphere }
-            } else {
-                Hit::NONE
-            };
-            let ray = launch.camera.ray(row.film(which));
-            let blank = launch.blank();
-            let pixel = launch.pixel(shading, &ray, hit, spheres, material_ids, materials, blank);
-            // SAFETY: as above.
-            unsafe { *pixels.index_unchecked_mut(place) = pixel };
+            is_continued = true;
+            if first >= end {
+                break;
+            }
         }
-        which += 1;
     }
 }
 
-/// Which of a thread's pixels are the launch's. Those beyond are traced for nothing, because their thread must meet the others' barriers.
-#[derive(Clone, Copy)]
-struct Strip {
-    first: u32,
-    count: u32,
-}
-
-impl Strip {
-    /// Of the pixels from `first` on, of a launch that `len` pixels are bound to.
-    #[inline]
-    fn of(launch: &Launch, first: UVec2, len: u32) -> Self {
-        let UVec2 {
-            x: width,
-            y: height,
-        } = launch.tile_size;
-        let start = first.y * width;
-        let mut count = 0;
-        if (first.x < width) & (first.y < height) & (start + width <= len) {
-            count = (width - first.x).div_ceil(GROUP.x).min(PIXELS);
-        }
-        Self {
-            first: start + first.x,
-            count,
-        }
-    }
-
-    /// Where a pixel is.
-    #[inline]
-    fn place(self, which: u32) -> usize {
-        (self.first + GROUP.x * which) as usize
+/// Which row of tiles, of so many rows of pixels, a row of workgroups has: those in the middle come first, as pictures have most there, and what
+/// takes longest must not begin last.
+#[inline]
+fn from_the_middle(row: u32, height: u32) -> u32 {
+    let (middle, away) = (height.div_ceil(TILE) / 2, row.div_ceil(2));
+    if row & 1 == 1 {
+        middle - away
+    } else {
+        middle + away
     }
 }
 
-/// Adds to the list what this thread looks at, of spheres from `first` up to `end`, and the frustum does not miss.
+/// Adds to the list what this thread looks at, of spheres from `first` up to `stop`, and the frustum does not miss.
 #[inline]
 fn list_seen(
     frustum: &Frustum,
     spheres: &[Sphere],
     first: u32,
-    end: u32,
+    stop: u32,
     thread: u32,
     shared: &mut Shared<'_>,
 ) {
-    let mine = first + thread;
-    let mut seen;
-    // The same for all threads.
-    if first + THREADS < end {
+    let mut mine = first + thread;
+    while mine < stop {
         // All are asked for before the first is looked at, so that a thread waits for memory once.
-        let one = look(spheres, end, mine);
-        let two = look(spheres, end, mine + THREADS);
-        let three = look(spheres, end, mine + 2 * THREADS);
-        let four = look(spheres, end, mine + 3 * THREADS);
-        seen = u32::from(!frustum.misses(one) & (mine < end));
-        seen |= u32::from(!frustum.misses(two) & (mine + THREADS < end)) << 1;
-        seen |= u32::from(!frustum.misses(three) & (mine + 2 * THREADS < end)) << 2;
-        seen |= u32::from(!frustum.misses(four) & (mine + 3 * THREADS < end)) << 3;
-    } else {
-        seen = u32::from(!frustum.misses(look(spheres, end, mine)) & (mine < end));
-    }
-    while seen != 0 {
-        let which = lowest_bit(seen);
-        seen &= seen - 1;
-        // SAFETY: all threads count by atomic additions until they next meet, and there was room for as many as are looked at.
-        unsafe {
-            let place = atomic_i_add::<u32, WORKGROUP, RELAXED>(shared.listed, 1);
-            *shared.list.index_unchecked_mut(place as usize) = mine + which * THREADS;
-        }
-    }
-}
-
-/// The sphere with this index, or the last of those up to `end`, of which there is one at least.
-#[inline]
-fn look(spheres: &[Sphere], end: u32, index: u32) -> Sphere {
-    // SAFETY: `end` is at most the number of spheres.
-    unsafe { *spheres.index_unchecked(index.min(end - 1) as usize) }
-}
-
-/// Puts a thread's cone into the tile: of one of the spheres that are left of those listed from `base` on, if there are so many.
-#[inline]
-fn put_cone(
-    launch: &Launch,
-    spheres: &[Sphere],
-    base: u32,
-    left: u32,
-    thread: u32,
-    shared: &mut Shared<'_>,
-) {
-    let mut cone = Cone::none();
-    if thread < left {
-        // SAFETY: below the number of those listed, and of spheres.
-        let sphere = unsafe {
-            let index = *shared.list.index_unchecked((base + thread) as usize);
-            *spheres.index_unchecked(index as usize)
-        };
-        cone = Cone::of(sphere, &launch.camera, *shared.is_square == 1);
-    }
-    // SAFETY: there is a cone for each thread.
-    unsafe { *shared.tile.index_unchecked_mut(thread as usize) = cone.to_vec4() };
-}
-
-/// Asks the rung about those of a step's spheres that a thread's rays may meet.
-#[expect(
-    clippy::too_many_arguments,
-    reason = "what a thread knows is in registers, and structs that change cost more of them"
-)]
-#[inline]
-fn ask(
-    rung: u32,
-    launch: &Launch,
-    spheres: &[Sphere],
-    row: &Row,
-    base: u32,
-    at: u32,
-    left: u32,
-    thread: u32,
-    shared: &mut Shared<'_>,
-) {
-    let mut candidates = row.candidates([
-        cone(shared, at),
-        cone(shared, at + 1),
-        cone(shared, at + 2),
-        cone(shared, at + 3),
-    ]);
-    // The rung's code stands here once, for whichever ray.
-    while candidates != 0 {
-        let bit = highest_bit(candidates);
-        candidates &= !(1 << bit);
-        let which = (31 - bit) & 7;
-        let at = at + (31 - bit) / 8;
-        if at < left {
-            let own = (THREADS * which + thread) as usize;
-            // SAFETY: below the number of those listed, of spheres, and of pixels.
-            unsafe {
-                let index = *shared.list.index_unchecked((base + at) as usize);
-                let sphere = *spheres.index_unchecked(index as usize);
-                let ray = launch.camera.ray(row.film(which));
-                let t = intersect(rung, sphere, &ray);
-                let nearest_t = *shared.nearest.index_unchecked(own);
-                let nearest_sphere = *shared.found.index_unchecked(own);
-                // Lists are in no order: of two at the same t the first of all spheres is taken.
-                if (t < nearest_t) | ((t == nearest_t) & (index < nearest_sphere)) {
-                    *shared.nearest.index_unchecked_mut(own) = t;
-                    *shared.found.index_unchecked_mut(own) = index;
+        let one = look(spheres, stop, mine);
+        let two = look(spheres, stop, mine + THREADS);
+        let mut seen = u32::from(!frustum.misses(one));
+        seen |= u32::from(!frustum.misses(two) & (mine + THREADS < stop)) << 1;
+        while seen != 0 {
+            let which = lowest_bit(seen);
+            seen &= seen - 1;
+            // SAFETY: all threads count by atomic additions until they next meet.
+            let place = unsafe { atomic_i_add::<u32, WORKGROUP, RELAXED>(shared.listed, 1) };
+            if place < LISTED as u32 {
+                // SAFETY: as just asked.
+                unsafe {
+                    *shared.list.index_unchecked_mut(place as usize) = mine + which * THREADS;
                 }
             }
         }
+        mine += 2 * THREADS;
     }
 }
 
-/// One of the tile's cones, where `at` is below its size.
+/// The sphere with this index, or the last of those up to `stop`, of which there is one at least.
 #[inline]
-fn cone(shared: &Shared<'_>, at: u32) -> Cone {
-    // SAFETY: as said.
-    Cone::from_vec4(unsafe { *shared.tile.index_unchecked(at as usize) })
+fn look(spheres: &[Sphere], stop: u32, index: u32) -> Sphere {
+    // SAFETY: `stop` is at most the number of spheres.
+    unsafe { *spheres.index_unchecked(index.min(stop - 1) as usize) }
+}
+
+/// Makes the cones of the spheres that are listed, and of none up to whole steps.
+#[inline]
+fn put_cones(
+    launch: &Launch,
+    spheres: &[Sphere],
+    count: u32,
+    thread: u32,
+    shared: &mut Shared<'_>,
+) {
+    let mut at = thread;
+    while at < count.next_multiple_of(STEP) {
+        let mut cone = Cone::none();
+        // SAFETY: lists are whole steps long, and what is listed is below the number of spheres.
+        unsafe {
+            if at < count {
+                let index = *shared.list.index_unchecked(at as usize);
+                let sphere = *spheres.index_unchecked(index as usize);
+                *shared.spheres.index_unchecked_mut(at as usize) = sphere;
+                cone = Cone::of(sphere, launch.camera.eye);
+            }
+            *shared.cones.index_unchecked_mut(at as usize) = cone.to_vec4();
+        }
+        at += THREADS;
+    }
+}
+
+/// Renders a pixel of the launch by the `count` spheres that are listed. If it is continued, it keeps what it has unless one of them is nearer.
+#[expect(
+    clippy::too_many_arguments,
+    reason = "these are the kernel's bindings, one each"
+)]
+#[inline]
+fn render_listed(
+    pixel: UVec2,
+    across: f32,
+    count: u32,
+    is_continued: bool,
+    shading: u32,
+    rung: u32,
+    launch: &Launch,
+    spheres: &[Sphere],
+    material_ids: &[u32],
+    materials: &[Material],
+    pixels: &mut [Pixel],
+    shared: &Shared<'_>,
+) {
+    let UVec2 {
+        x: width,
+        y: height,
+    } = launch.tile_size;
+    let place = (pixel.y * width + pixel.x) as usize;
+    if (pixel.x >= width) | (pixel.y >= height) | (place >= pixels.len()) {
+        return;
+    }
+    let mut end = Hit::NONE_T;
+    if is_continued {
+        // SAFETY: as just asked.
+        end = unsafe { pixels.index_unchecked(place).depth() };
+    }
+    let ray = launch.camera.ray(Vec2::new(across, film(launch, pixel).y));
+    let sight = Sight::along(ray.direction);
+    let mut nearest = Hit { t: end, sphere: 0 };
+    let mut base = 0;
+    while base < count {
+        let stop = count.next_multiple_of(STEP).min(base + BITS);
+        let mut misses = u32::MAX;
+        let mut at = base;
+        while at < stop {
+            misses = sight.misses(misses, cone(at, shared));
+            misses = sight.misses(misses, cone(at + 1, shared));
+            misses = sight.misses(misses, cone(at + 2, shared));
+            misses = sight.misses(misses, cone(at + 3, shared));
+            at += STEP;
+        }
+        // The last cone's bit is the lowest.
+        let mut candidates = !misses;
+        while candidates != 0 {
+            let bit = highest_bit(candidates);
+            candidates ^= 1 << bit;
+            let (index, sphere) = listed(stop - 1 - bit, shared);
+            let t = intersect(rung, sphere, &ray);
+            // Lists are in no order: of two at the same t the first of all spheres is taken.
+            if (t < nearest.t) | ((t == nearest.t) & (index < nearest.sphere)) {
+                nearest = Hit { t, sphere: index };
+            }
+        }
+        base += BITS;
+    }
+    // What a pixel has from earlier spheres it keeps.
+    if !is_continued | (nearest.t < end) {
+        if nearest.t >= end {
+            nearest = Hit::NONE;
+        }
+        let blank = launch.blank();
+        let pixel = launch.pixel(
+            shading,
+            &ray,
+            nearest,
+            spheres,
+            material_ids,
+            materials,
+            blank,
+        );
+        // SAFETY: as above.
+        unsafe { *pixels.index_unchecked_mut(place) = pixel };
+    }
+}
+
+/// A sphere of the list, and its index.
+#[inline]
+fn listed(at: u32, shared: &Shared<'_>) -> (u32, Sphere) {
+    // SAFETY: callers ask for those that are listed.
+    unsafe {
+        (
+            *shared.list.index_unchecked(at as usize),
+            *shared.spheres.index_unchecked(at as usize),
+        )
+    }
+}
+
+/// One of the cones.
+#[inline]
+fn cone(at: u32, shared: &Shared<'_>) -> Cone {
+    // SAFETY: callers ask for those that were put.
+    Cone::from_vec4(unsafe { *shared.cones.index_unchecked(at as usize) })
 }
 
 /// Where on the film a pixel of a launch is.
 #[inline]
 fn film(launch: &Launch, pixel: UVec2) -> Vec2 {
     Camera::film(launch.tile_origin + pixel, launch.image_size)
-}
-
-/// How far to the right four of a thread's pixels are on the film.
-#[inline]
-fn four_across(launch: &Launch, first: UVec2, which: u32) -> Vec4 {
-    Vec4::new(
-        film(launch, pixel_of(first, which)).x,
-        film(launch, pixel_of(first, which + 1)).x,
-        film(launch, pixel_of(first, which + 2)).x,
-        film(launch, pixel_of(first, which + 3)).x,
-    )
-}
-
-/// One of the pixels that a thread has: the others are to the right, as far apart as the workgroup is wide.
-#[inline]
-fn pixel_of(first: UVec2, which: u32) -> UVec2 {
-    first + UVec2::new(GROUP.x * which, 0)
 }

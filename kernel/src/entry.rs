@@ -8,7 +8,7 @@ use glam::{UVec2, UVec3, Vec4};
 use spirv_std::arch::IndexUnchecked;
 use spirv_std::spirv;
 
-use crate::by_tiles::{ALL, LISTED, Shared, TILE, render_group};
+use crate::by_tiles::{LISTED, Shared, render_group};
 use crate::canary::{Operands, Outcome, sing};
 #[cfg(any(not(target_arch = "spirv"), feature = "f64"))]
 use crate::canary::{WideOutcome, sing_wide};
@@ -64,8 +64,8 @@ pub fn render(
     }
 }
 
-/// [`render`] for many spheres without a tree; a thread has eight pixels of a row.
-#[spirv(compute(threads(4, 32), entry_point_name = "render_by_tiles"))]
+/// [`render`] for many spheres without a tree; a workgroup has 32 × 32 pixels.
+#[spirv(compute(threads(8, 32), entry_point_name = "render_by_tiles"))]
 pub fn render_by_tiles(
     #[spirv(local_invocation_id)] local: UVec3,
     #[spirv(workgroup_id)] group: UVec3,
@@ -77,21 +77,17 @@ pub fn render_by_tiles(
     #[spirv(storage_buffer, descriptor_set = 0, binding = 3)] materials: &[Material],
     #[spirv(storage_buffer, descriptor_set = 0, binding = 4)] pixels: &mut [Pixel],
     #[spirv(workgroup)] planes: &mut [Vec4; 4],
-    #[spirv(workgroup)] is_square: &mut u32,
     #[spirv(workgroup)] listed: &mut u32,
     #[spirv(workgroup)] list: &mut [u32; LISTED],
-    #[spirv(workgroup)] tile: &mut [Vec4; TILE],
-    #[spirv(workgroup)] nearest: &mut [f32; ALL],
-    #[spirv(workgroup)] found: &mut [u32; ALL],
+    #[spirv(workgroup)] listed_spheres: &mut [Sphere; LISTED],
+    #[spirv(workgroup)] cones: &mut [Vec4; LISTED],
 ) {
     let mut shared = Shared {
         planes,
-        is_square,
         listed,
         list,
-        tile,
-        nearest,
-        found,
+        spheres: listed_spheres,
+        cones,
     };
     render_group(
         group.truncate(),

@@ -44,6 +44,9 @@ pub struct Launch {
     pub sphere_count: u32,
 }
 
+/// Pixels along each side of what a workgroup of `render_by_tiles` has.
+pub const TILE: u32 = 32;
+
 /// One pixel: a linear colour, and the depth that decides between launches.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]

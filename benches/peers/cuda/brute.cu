@@ -2,10 +2,10 @@
 // textbook in 32-bit floats.
 //
 // --variant plain:  one thread a pixel, spheres from global memory.
-// --variant tricks: a block lists the spheres that four planes around its 32 x 32 pixels let pass, and keeps them in shared
-//                   memory as the cones that they fill seen from the one origin (what a camera's axes make with
-//                   (C - O) / sqrt(o.o - r^2)): eight pixels of a row a thread, four spheres a step; a ray that may hit solves for t
-//                   as the renderer does.
+// --variant tricks: a block lists the spheres that four planes around its 32 x 32 pixels let pass, in shared memory, with the
+//                   cones that they fill seen from the one origin ((C - O) / sqrt(o.o - r^2)). Pixel by pixel a thread
+//                   compares cones by three multiply-adds and a difference, four between two branches, up to 32 before those that the
+//                   ray may hit are solved for t as the renderer does. Blocks begin with the middle rows.
 #include "scene.h"
 
 // Each kernel writes what the renderer it is compared with writes: a colour and a depth.
@@ -34,18 +34,18 @@ __global__ void plain(Camera camera, int width, int height, int count, const flo
     pixels[y * width + x] = pixel(nearest);
 }
 
-constexpr int RAYS = 8, WIDE = 4, HIGH = 32, THREADS = WIDE * HIGH, TILE = THREADS, STEP = 32 / RAYS;
-constexpr int LOOKS = 4, BATCH = LOOKS * THREADS, LISTED = BATCH + TILE;
+constexpr int WIDE = 8, HIGH = 32, THREADS = WIDE * HIGH, SIDE = 32, ROWS = THREADS / SIDE, STEP = 4, BITS = 32;
+constexpr int LISTED = 256, BATCH = 1 << 14, SMALL_BATCH = LISTED / 2;
 
 __device__ float dot(float3 a, float3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
-// What the camera's axes make with the sphere's centre, in units of the distance at which rays touch it.
-__device__ float4 cone(float4 s, const Camera &camera) {
-    float3 o = make_float3(s.x - camera.eye.x, s.y - camera.eye.y, s.z - camera.eye.z);
-    float oo = dot(o, o), rr = s.w * s.w, c = (oo - rr) - (oo + rr) * (1.25f / (1 << 17));
-    if (!(c > 1e-30f && c < 1e30f)) return make_float4(0.0f, 0.0f, 3.4e38f, 0.0f);
+// The way to the sphere's centre, in units of the distance at which rays touch it; and what is added for those that every ray meets.
+__device__ float4 cone(float4 s, float3 eye) {
+    float3 o = make_float3(s.x - eye.x, s.y - eye.y, s.z - eye.z);
+    float oo = dot(o, o), rr = s.w * s.w, c = (oo - rr) - (oo + rr) * (1.5f / (1 << 18));
+    if (!(c > 1e-30f && c < 1e30f)) return make_float4(0.0f, 0.0f, 0.0f, 3.4e38f);
     float scale = rsqrtf(c);
-    return make_float4(dot(camera.right, o) * scale, dot(camera.up, o) * scale, dot(camera.forward, o) * scale, 0.0f);
+    return make_float4(o.x * scale, o.y * scale, o.z * scale, 0.0f);
 }
 
 __device__ float3 cross(float3 a, float3 b) {
@@ -83,87 +83,90 @@ __global__ void tricks(Camera camera, int width, int height, int count, const fl
                        float4 *pixels) {
     __shared__ float3 around[4];
     __shared__ int listed, list[LISTED];
-    __shared__ float4 tile[TILE];
-    __shared__ float nearest[RAYS][THREADS];
-    __shared__ int found[RAYS][THREADS];
-    int corner_x = blockIdx.x * WIDE * RAYS, corner_y = blockIdx.y * HIGH;
-    int x = corner_x + threadIdx.x, y = corner_y + threadIdx.y;
-    int thread = threadIdx.y * WIDE + threadIdx.x;
+    __shared__ float4 near_by[LISTED], cones[LISTED];
+    int middle = gridDim.y / 2, away = (blockIdx.y + 1) / 2;
+    int corner_x = blockIdx.x * SIDE, corner_y = (blockIdx.y % 2 == 1 ? middle - away : middle + away) * SIDE;
+    int thread = threadIdx.y * WIDE + threadIdx.x, warp = thread / 32;
+    int x = corner_x + warp % 4 * WIDE + threadIdx.x, y = corner_y + warp / 4 * 4 + threadIdx.y % 4;
     if (thread < 4) {
         bool is_across = thread < 2;
         float3 along = is_across ? camera.right : camera.up;
-        float left = film_x(corner_x, width), right = film_x(corner_x + WIDE * RAYS - 1, width);
-        float below = film_y(corner_y + HIGH - 1, height), above = film_y(corner_y, height);
+        float left = film_x(corner_x, width), right = film_x(corner_x + SIDE - 1, width);
+        float below = film_y(corner_y + SIDE - 1, height), above = film_y(corner_y, height);
         float at = is_across ? (thread == 0 ? left : right) : (thread == 2 ? below : above);
         around[thread] = plane(camera.forward, times(along, at), is_across ? camera.up : camera.right,
                                times(along, thread % 2 == 0 ? 1.0f : -1.0f));
     }
     if (thread == 0) listed = 0;
-    float across[RAYS], lengths[RAYS], up = film_y(y, height);
-    float3 middle = make_float3(camera.forward.x + camera.up.x * up, camera.forward.y + camera.up.y * up,
-                                camera.forward.z + camera.up.z * up);
-    float mm = dot(middle, middle), mr = 2.0f * dot(middle, camera.right), rr = dot(camera.right, camera.right);
-#pragma unroll
-    for (int ray = 0; ray < RAYS; ray++) {
-        float at = across[ray] = film_x(x + ray * WIDE, width);
-        lengths[ray] = sqrtf(mm + at * (mr + at * rr));
-        nearest[ray][thread] = 3.4e38f;
-        found[ray][thread] = -1;
-    }
-    for (int first = 0; first < count;) {
+    bool is_continued = false;
+    for (int first = 0, before = 0, batch = BATCH; first < count || !is_continued;) {
         __syncthreads();
         float3 planes[4] = {around[0], around[1], around[2], around[3]};
-        int looks = first + THREADS < count ? LOOKS : 1;
-        float4 look[LOOKS];
+        int stop = min(first + batch, count);
+        for (int mine = first + thread; mine < stop; mine += 2 * THREADS) {
+            float4 look[2] = {spheres[mine], spheres[min(mine + THREADS, stop - 1)]};
 #pragma unroll
-        for (int i = 0; i < LOOKS; i++)
-            if (i < looks) look[i] = spheres[min(first + thread + i * THREADS, count - 1)];
-#pragma unroll
-        for (int i = 0; i < LOOKS; i++) {
-            int index = first + thread + i * THREADS;
-            if (i < looks && index < count && !misses(planes, look[i], camera.eye)) list[atomicAdd(&listed, 1)] = index;
+            for (int i = 0; i < 2; i++) {
+                int index = mine + i * THREADS;
+                if (index >= stop || misses(planes, look[i], camera.eye)) continue;
+                int place = atomicAdd(&listed, 1);
+                if (place < LISTED) list[place] = index;
+            }
         }
-        first += BATCH;
         __syncthreads();
-        int due = listed > LISTED - BATCH || first >= count ? listed : 0;
-        for (int base = 0; base < due; base += TILE) {
-            if (base > 0) __syncthreads();
-            int left = min(due - base, TILE);
-            tile[thread] = thread < left ? cone(spheres[list[base + thread]], camera) : make_float4(0.0f, 0.0f, 0.0f, 0.0f);
-            __syncthreads();
-            for (int i = 0; i < left; i += STEP) {
-                unsigned misses = 0;
+        int due = listed;
+        bool is_due = true;
+        if (due > LISTED) {
+            due = before, batch = max(SMALL_BATCH, batch / 4);
+        } else {
+            first = stop, before = due, batch = min(BATCH, batch * 2);
+            is_due = due > LISTED - SMALL_BATCH || first >= count;
+        }
+        if (!is_due) continue;
+        int padded = (due + STEP - 1) / STEP * STEP;
+        for (int i = thread; i < padded; i += THREADS) {
+            cones[i] = make_float4(0.0f, 0.0f, 0.0f, -3.4e38f);
+            if (i >= due) continue;
+            near_by[i] = spheres[list[i]];
+            cones[i] = cone(near_by[i], camera.eye);
+        }
+        __syncthreads();
+        if (thread == 0) listed = 0;
+        before = 0;
+#pragma unroll 1
+        for (int row = y; row < corner_y + SIDE; row += ROWS) {
+            if (x >= width || row >= height) continue;
+            float4 *own = pixels + row * width + x;
+            float3 d = direction(camera, x, row, width, height);
+            float length = sqrtf(dot(d, d)), end = is_continued ? own->w : 3.4e38f, nearest = end;
+            int found = -1;
+#pragma unroll 1
+            for (int base = 0; base < due; base += BITS) {
+                int until = min(padded, base + BITS);
+                unsigned misses = ~0u;
+#pragma unroll 1
+                for (int i = base; i < until; i += STEP) {
 #pragma unroll
-                for (int k = 0; k < STEP; k++) {
-                    float4 g = tile[i + k];
-                    float row = fmaf(up, g.y, g.z);
-#pragma unroll
-                    for (int ray = 0; ray < RAYS; ray++) {
-                        float by = fmaf(across[ray], g.x, row) - lengths[ray];
+                    for (int k = 0; k < STEP; k++) {
+                        float4 h = cones[i + k];
+                        float by = fmaf(d.x, h.x, fmaf(d.y, h.y, fmaf(d.z, h.z, h.w))) - length;
                         misses = __funnelshift_l(__float_as_uint(by), misses, 1);
                     }
                 }
                 for (unsigned rest = ~misses; rest != 0;) {
-                    int at = __clz(rest), ray = at % RAYS, place = i + at / RAYS;
-                    rest &= ~(0x80000000u >> at);
-                    if (place >= left) continue;
-                    int index = list[base + place];
-                    float3 d = direction(camera, x + ray * WIDE, y, width, height);
-                    float t = solve(spheres[index], camera.eye, d), before = nearest[ray][thread];
-                    if (t < before || (t == before && index < found[ray][thread]))
-                        nearest[ray][thread] = t, found[ray][thread] = index;
+                    int bit = 31 - __clz(rest), place = until - 1 - bit, index = list[place];
+                    rest ^= 1u << bit;
+                    float t = solve(near_by[place], camera.eye, d);
+                    if (t < nearest || (t == nearest && index < found)) nearest = t, found = index;
                 }
             }
+            if (is_continued && !(nearest < end)) continue;
+            float4 color = pixel(nearest);
+            color.y = (float)found;
+            *own = color;
         }
-        if (due && thread == 0) listed = 0;
+        is_continued = true;
     }
-#pragma unroll
-    for (int ray = 0; ray < RAYS; ray++)
-        if (x + ray * WIDE < width && y < height) {
-            float4 color = pixel(nearest[ray][thread]);
-            color.y = (float)found[ray][thread];
-            pixels[y * width + x + ray * WIDE] = color;
-        }
 }
 
 int main(int argc, char **argv) {
@@ -176,8 +179,8 @@ int main(int argc, char **argv) {
     float4 *spheres = upload(scene.spheres);
     float4 *pixels = upload(std::vector<float4>((size_t)width * height));
     dim3 block = with_tricks ? dim3(WIDE, HIGH) : dim3(8, 8);
-    int columns = block.x * (with_tricks ? RAYS : 1);
-    dim3 grid((width + columns - 1) / columns, (height + block.y - 1) / block.y);
+    int side = with_tricks ? SIDE : 8;
+    dim3 grid((width + side - 1) / side, (height + side - 1) / side);
     double seconds = median(arguments.repeat, [&] {
         if (with_tricks) tricks<<<grid, block>>>(scene.camera, width, height, count, spheres, pixels);
         else plain<<<grid, block>>>(scene.camera, width, height, count, spheres, pixels);
