@@ -519,6 +519,42 @@ fn explain_says_what_calls_for_each_effect_and_what_it_costs() {
     assert!(report["frame"]["all_effects"]["milliseconds"].as_f64() > Some(0.0));
 }
 
+/// A scene that takes too long is measured in a smaller image of the same shape, which is said.
+#[test]
+fn measuring_keeps_to_its_time() {
+    let scene = "scenes/glass-marble.toml";
+    let output = spherule()
+        .args(["explain", scene, "--device", "cpu", "--samples", "2"])
+        .args(["--time-limit", "1", "--json"])
+        .assert()
+        .success();
+    let report: serde_json::Value =
+        serde_json::from_slice(&output.get_output().stdout).expect("JSON");
+    let size = |key: &str| report[key].as_u64().expect("a size");
+    let (width, height) = (size("width"), size("height"));
+    assert_eq!(report["whole_image"], serde_json::json!([960, 540]));
+    assert!(
+        (16..540).contains(&height) && width * 540 < (height + 1) * 960,
+        "{width} × {height}"
+    );
+    spherule()
+        .args(["explain", scene, "--time-limit", "1", "--size", "16x9"])
+        .assert()
+        .code(2)
+        .stderr(contains("--time-limit").and(contains("--size")));
+    spherule()
+        .args(["accuracy", "--device", "cpu", "--time-limit", "1"])
+        .args(["--samples", "scenes/box.toml"])
+        .assert()
+        .success()
+        .stderr(contains("to be done in time").and(contains("--size")));
+    spherule()
+        .args(["accuracy", "--time-limit", "1"])
+        .assert()
+        .code(2)
+        .stderr(contains("--samples"));
+}
+
 #[test]
 fn sampling_is_asked_for_and_reported() {
     let dir = temporary();

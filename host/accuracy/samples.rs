@@ -9,7 +9,7 @@ use crate::error::Result;
 use crate::film::Image;
 use crate::film::flip::mean_flip;
 use crate::render::{QUIET, Settings, render};
-use crate::scene::Scene;
+use crate::scene::{MAX_SAMPLES, Scene};
 
 /// How many more samples the reference has than the last step.
 const REFERENCE: u32 = 16;
@@ -31,6 +31,17 @@ pub struct Step {
     pub flip: f64,
 }
 
+/// How many samples a pixel [`measure`] takes in all.
+#[must_use]
+pub fn in_all(rungs: usize, most: u32) -> u64 {
+    2 * rungs as u64 * u64::from(most) + u64::from(of_reference(most))
+}
+
+/// How many samples a pixel the reference has.
+fn of_reference(most: u32) -> u32 {
+    most.saturating_mul(REFERENCE).min(MAX_SAMPLES)
+}
+
 /// Renders `scene` on `device` on each of `rungs` with 1, 2, 4, … up to `most` samples. The reference
 /// is of another seed, on the highest of the rungs, with sixteen times as many.
 ///
@@ -43,10 +54,7 @@ pub fn measure(device: &Device, rungs: &[Rung], scene: &Scene, most: u32) -> Res
         ..Settings::default()
     };
     let mut scene = scene.clone();
-    scene.sampling.samples = Some(
-        most.saturating_mul(REFERENCE)
-            .min(crate::scene::MAX_SAMPLES),
-    );
+    scene.sampling.samples = Some(of_reference(most));
     scene.sampling.seed = scene.sampling.seed.wrapping_add(0x5eed);
     let highest = rungs.last().copied().unwrap_or_default();
     let reference = render(&scene, settings(highest), device, QUIET)?.image;

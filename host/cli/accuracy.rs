@@ -3,6 +3,7 @@
 use std::fmt::Write;
 use std::path::Path;
 use std::process::ExitCode;
+use std::time::Duration;
 
 use serde::Serialize;
 use spherule_kernel::{Ray, Rung, Sphere};
@@ -18,6 +19,8 @@ use crate::accuracy::samples::{self, Step};
 use crate::accuracy::{report, scene_rays};
 use crate::device::Device;
 use crate::error::{Error, Result, SceneError};
+use crate::render::fit::fit;
+use crate::render::{QUIET, Settings, render};
 use crate::scene::Scene;
 
 /// Everything that was measured; the JSON output is this.
@@ -31,6 +34,9 @@ pub(super) struct Report {
     families: Vec<FamilyReport>,
     #[serde(skip_serializing_if = "Option::is_none")]
     frames: Option<FramesReport>,
+    /// Width and height of the image that `samples` are of.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    samples_image: Option<[u32; 2]>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     samples: Vec<Step>,
 }
@@ -81,6 +87,7 @@ pub(super) fn run(arguments: &AccuracyArguments) -> Result<ExitCode> {
     let mut families = Vec::new();
     let mut frames = None;
     let mut steps = Vec::new();
+    let mut image = None;
     match &arguments.scene {
         _ if arguments.samples.is_some() => {
             let path = arguments.samples.as_deref().unwrap_or(Path::new(""));
@@ -99,6 +106,17 @@ pub(super) fn run(arguments: &AccuracyArguments) -> Result<ExitCode> {
             // The others are between these two in time and in error.
             let ends = [Rung::Robust, Rung::Double, Rung::Certified];
             let rungs: Vec<Rung> = ends.into_iter().filter(|r| rungs.contains(r)).collect();
+            let whole = [scene.width, scene.height];
+            if arguments.size.is_none() {
+                fit_samples(&mut scene, &device, &rungs, arguments.time_limit)?;
+            }
+            if whole != [scene.width, scene.height] {
+                note(&format!(
+                    "with {} × {} of {} × {} pixels, to be done in time (--size {2}x{3} measures all)",
+                    scene.width, scene.height, whole[0], whole[1],
+                ));
+            }
+            image = Some([scene.width, scene.height]);
             steps = samples::measure(&device, &rungs, &scene, MOST_SAMPLES)?;
         }
         Some(Subject::Scene(path)) => {
@@ -132,6 +150,7 @@ pub(super) fn run(arguments: &AccuracyArguments) -> Result<ExitCode> {
         refused,
         families,
         frames,
+        samples_image: image,
         samples: steps,
     };
     if let Some(path) = &arguments.json {
@@ -182,9 +201,27 @@ fn write(path: &Path, text: &str) -> Result<()> {
     })
 }
 
+/// Makes the image of `scene` smaller where what `--samples` renders of it would take longer than `seconds`.
+fn fit_samples(scene: &mut Scene, device: &Device, rungs: &[Rung], seconds: f64) -> Result<()> {
+    let samples = scene.sampling.samples.replace(1);
+    let in_all = samples::in_all(rungs.len(), MOST_SAMPLES);
+    // The reference takes most of the time, on the highest of the rungs.
+    let settings = Settings {
+        rung: rungs.last().copied().unwrap_or_default(),
+        ..Settings::default()
+    };
+    let sample = Duration::from_secs_f64(seconds / in_all as f64);
+    fit(scene, sample, |scene| {
+        Ok(render(scene, settings, device, QUIET)?.timings.trace)
+    })?;
+    scene.sampling.samples = samples;
+    Ok(())
+}
+
 fn steps_table(report: &Report) -> String {
+    let [width, height] = report.samples_image.unwrap_or_default();
     let mut text = format!(
-        "{}\n\n{:12} {:>8} {:>14} {:>10} {:>10} {:>10} {:>12}\n",
+        "{}, {width} × {height} pixels\n\n{:12} {:>8} {:>14} {:>10} {:>10} {:>10} {:>12}\n",
         report.device, "rung", "samples", "ms", "error", "estimate", "ꟻLIP", "error² × ms",
     );
     for (index, step) in report.samples.iter().enumerate() {

@@ -148,9 +148,13 @@ pub(super) struct AccuracyArguments {
     #[arg(long, value_name = "SCENE.toml", conflicts_with = "scene")]
     pub(super) samples: Option<PathBuf>,
 
-    /// The size of a scene file's frames in pixels [default: the scene's]
+    /// The size of a scene file's frames in pixels [default: the scene's; with --samples see --time-limit]
     #[arg(long, value_name = "WIDTHxHEIGHT")]
     pub(super) size: Option<Size>,
+
+    /// With --samples: measure a smaller image where the scene's would take longer than about this many seconds
+    #[arg(long, value_name = "SECONDS", value_parser = positive, default_value = "60", conflicts_with = "size", requires = "samples")]
+    pub(super) time_limit: f64,
 
     /// Write a report to look at: one HTML page with its plots in it
     #[arg(short, long, value_name = "REPORT.html")]
@@ -174,13 +178,17 @@ pub(super) struct ExplainArguments {
     #[arg(long, value_enum, default_value = "auto")]
     pub(super) precision: Precision,
 
-    /// The image's size in pixels [default: the scene's]
+    /// The image's size in pixels [default: the scene's, or smaller: see --time-limit]
     #[arg(long, value_name = "WxH")]
     pub(super) size: Option<Size>,
 
     /// Samples a pixel [default: the scene's]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_SAMPLES)))]
     pub(super) samples: Option<u32>,
+
+    /// Measure a smaller image where the scene's would take longer than about this many seconds
+    #[arg(long, value_name = "SECONDS", value_parser = positive, default_value = "20", conflicts_with_all = ["size", "no_costs"])]
+    pub(super) time_limit: f64,
 
     /// Only say what is called for; render nothing
     #[arg(long)]

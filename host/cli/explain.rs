@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 use std::process::ExitCode;
+use std::time::Duration;
 
 use serde::Serialize;
 use spherule_kernel::{Effects, Rung};
@@ -12,17 +13,21 @@ use crate::accuracy::choose::{DEFAULT_TOLERANCE, choose};
 use crate::device::Device;
 use crate::error::Result;
 use crate::kernel_module;
-use crate::render::Settings;
 use crate::render::cost::{self, Cost};
+use crate::render::fit::fit;
 use crate::render::paths::EffectChoice;
+use crate::render::{QUIET, Settings, render};
 use crate::scene::Scene;
 
 #[derive(Debug, Serialize)]
 struct Report {
     scene: String,
     spheres: usize,
+    /// Of the image that was measured.
     width: u32,
     height: u32,
+    /// Width and height of the scene's image.
+    whole_image: [u32; 2],
     samples: u32,
     max_bounces: u32,
     device: String,
@@ -69,7 +74,7 @@ pub(super) fn run(arguments: &ExplainArguments) -> Result<ExitCode> {
             (choice.rung, format!("within {:.1e} pixels", choice.bound))
         }
     };
-    let report = report(arguments, &scene, &device, why, rung, why_precision)?;
+    let report = report(arguments, scene, &device, why, rung, why_precision)?;
     if arguments.json {
         let text = serde_json::to_string_pretty(&report).unwrap_or_default();
         print(&format!("{text}\n"))?;
@@ -81,7 +86,7 @@ pub(super) fn run(arguments: &ExplainArguments) -> Result<ExitCode> {
 
 fn report(
     arguments: &ExplainArguments,
-    scene: &Scene,
+    mut scene: Scene,
     device: &Device,
     why: String,
     rung: Rung,
@@ -95,6 +100,7 @@ fn report(
             .iter()
             .map(|one| EffectChoice::Only(own.without(one.effect))),
     );
+    let whole_image = [scene.width, scene.height];
     let mut costs = if arguments.no_costs {
         Vec::new()
     } else {
@@ -103,7 +109,14 @@ fn report(
             rung,
             ..Settings::default()
         };
-        cost::measure(scene, settings, device, &choices)?
+        if arguments.size.is_none() {
+            let frames = cost::frames(choices.len()) as f64;
+            let frame = Duration::from_secs_f64(arguments.time_limit / frames);
+            fit(&mut scene, frame, |scene| {
+                Ok(render(scene, settings, device, QUIET)?.timings.trace)
+            })?;
+        }
+        cost::measure(&scene, settings, device, &choices)?
     };
     let without: Vec<Cost> = costs.drain(2.min(costs.len())..).collect();
     let frame = <[Cost; 2]>::try_from(costs)
@@ -125,6 +138,7 @@ fn report(
         spheres: scene.world.spheres.len(),
         width: scene.width,
         height: scene.height,
+        whole_image,
         samples: scene.samples(),
         max_bounces: scene.sampling.max_bounces,
         device: device.name(),
@@ -138,12 +152,11 @@ fn report(
 }
 
 fn table(report: &Report) -> String {
+    let [width, height] = report.whole_image;
     let mut text = format!(
-        "{}: {} spheres, {} × {} pixels, {} samples, at most {} bounces\n{}, precision {} ({})\n",
+        "{}: {} spheres, {width} × {height} pixels, {} samples, at most {} bounces\n{}, precision {} ({})\n",
         report.scene,
         report.spheres,
-        report.width,
-        report.height,
         report.samples,
         report.max_bounces,
         report.device,
@@ -158,6 +171,13 @@ fn table(report: &Report) -> String {
         )
     };
     // Writing to a String cannot fail.
+    if report.whole_image != [report.width, report.height] {
+        let _ = writeln!(
+            text,
+            "measured with {} × {} pixels, to be done in time (--size {width}x{height} measures all)",
+            report.width, report.height,
+        );
+    }
     if let Some(frame) = &report.frame {
         let ratio = frame.all_effects.milliseconds / frame.own.milliseconds;
         let _ = writeln!(

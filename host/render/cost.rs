@@ -25,6 +25,12 @@ pub struct Cost {
     pub compile_milliseconds: f64,
 }
 
+/// How many frames [`measure`] renders by so many pipelines.
+#[must_use]
+pub fn frames(pipelines: usize) -> usize {
+    pipelines * (1 + ROUNDS)
+}
+
 /// The costs of `scene` on `device` by the pipelines of each of `choices`.
 ///
 /// # Errors

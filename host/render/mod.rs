@@ -8,12 +8,14 @@
 //! | [`paths`] | light paths, for scenes that call for effects |
 //! | [`estimate`] | whether a GPU is worth opening for an image |
 //! | [`cost`] | the time of a frame by pipelines of more or fewer effects |
+//! | [`fit`](mod@fit) | how large an image may be to be measured in the time there is |
 //! | [`pace`] | how much work one launch gets |
 //! | `tiles` | how an image is cut within a device's limits |
 
 pub mod cost;
 pub mod cpu;
 pub mod estimate;
+pub mod fit;
 pub mod gpu;
 pub mod pace;
 pub mod packet;
