@@ -2,7 +2,9 @@
 //! threads goes through the list for four pixels, one after the other. Runs on the GPU.
 
 use glam::{UVec2, Vec2, Vec4};
-use spirv_std::arch::{IndexUnchecked, atomic_i_add, workgroup_memory_barrier_with_group_sync};
+use spirv_std::arch::{
+    IndexUnchecked, atomic_i_add, device_memory_barrier, workgroup_memory_barrier_with_group_sync,
+};
 use spirv_std::memory::{Scope, Semantics};
 
 use crate::cone::{Cone, Sight};
@@ -120,6 +122,10 @@ pub fn render_group(
                 *shared.listed = 0;
             }
             before = 0;
+            if is_continued {
+                // Pixels are read that were written: not from where they were kept before.
+                device_memory_barrier();
+            }
             let mut row = 0;
             while row < TILE {
                 let pixel = first_pixel + UVec2::new(0, row);
