@@ -38,7 +38,7 @@ body{font:15px/1.5 system-ui,sans-serif;color:#222;max-width:1080px;margin:2rem 
 h1{font-size:1.6rem;margin-bottom:.2rem}h2{font-size:1.15rem;margin:2rem 0 .3rem}\
 p{margin:.4rem 0;max-width:75ch}.plots{display:flex;flex-wrap:wrap;gap:1rem}figure{margin:0}\
 figcaption{font-size:.85rem;color:#555}svg{background:#fff}svg text{font:12px system-ui,sans-serif;fill:#333}\
-table{border-collapse:collapse;font-size:.85rem;margin:.6rem 0}th,td{padding:.15rem .7rem;text-align:right}\
+table{border-collapse:collapse;font-size:.85rem;margin:.6rem 0}th,td{padding:.15rem .5rem;text-align:right;white-space:nowrap}\
 th{border-bottom:1px solid #999;font-weight:600}td:first-child,th:first-child{text-align:left}\
 code{font-size:.8em}pre{font-size:.75rem;overflow-x:auto;background:#f6f6f6;padding:.7rem}\
 @media print{body{margin:0;max-width:none}section{break-inside:avoid}}";
@@ -65,8 +65,8 @@ pub fn page(
         } else {
             format!(
                 ", {rays} rays a family, every answer judged by exact arithmetic. Left: the worst error of the \
-                 distance t against the time of one ray-sphere test; lower and further left is better, and the line joins the \
-                 rungs that no other beats in both. Beside a name stand the rays put on the wrong side of a silhouette. Right: \
+                 distance t against the time of one ray-sphere test; lower and further left is better, a bar goes from \
+                 the fastest round to the slowest, and the dashed line joins the rungs that no other beats in both. Beside a name stand the rays put on the wrong side of a silhouette. Right: \
                  how the errors of the hits are spread."
             )
         },
@@ -473,17 +473,26 @@ fn worst_inputs(rungs: &[Row<'_>]) -> String {
         };
         let _ = write!(
             html,
-            "<tr><td>{}</td><td>{}</td><td>{:e}</td><td>{:e}</td><td><code>{}</code></td><td><code>{}</code></td><td><code>{}</code></td></tr>",
+            "<tr><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td><code>{}</code></td><td><code>{}</code></td><td><code>{}</code></td></tr>",
             escape(row.rung),
             row.measured.max_ulp_anywhere,
-            worst.found,
-            worst.truth,
+            parameter(worst.found),
+            parameter(worst.truth),
             bits(&worst.ray[..3]),
             bits(&worst.ray[3..]),
             bits(&worst.sphere),
         );
     }
     html + "</table>"
+}
+
+/// A parameter along a ray, with all of its digits.
+fn parameter(t: f32) -> String {
+    if (1e-3..1e6).contains(&t.abs()) {
+        t.to_string()
+    } else {
+        format!("{t:e}")
+    }
 }
 
 fn open_svg(title: &str) -> String {
