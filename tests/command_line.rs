@@ -555,6 +555,34 @@ fn measuring_keeps_to_its_time() {
         .stderr(contains("--samples"));
 }
 
+/// A share of the limit for each kind of rays, unless it is not asked for.
+#[test]
+fn bench_says_shares_of_the_limit() {
+    let bench = |options: &[&str]| {
+        let output = spherule()
+            .args(["bench", "--device", "cpu", "--scene", "S46"])
+            .args(["--size", "64x36", "--rounds", "2", "--json", "-"])
+            .args(options)
+            .assert()
+            .success();
+        serde_json::from_slice::<serde_json::Value>(&output.get_output().stdout).expect("JSON")
+    };
+    let report = bench(&[]);
+    assert!(report["limit"]["operations_per_s"].as_f64() > Some(1e8));
+    let without = bench(&["--no-limit"]);
+    assert!(without["limit"].is_null());
+    for kind in ["primary", "shadow", "ambient", "incoherent"] {
+        let rays = |report: &serde_json::Value| report["scenes"][0]["rays"][kind].clone();
+        assert!(rays(&report)["mrays_per_s"].as_f64() > Some(0.0), "{kind}");
+        assert!(
+            rays(&report)["share_of_limit"].as_f64() > Some(0.0),
+            "{kind}"
+        );
+        assert!(rays(&without)["share_of_limit"].is_null(), "{kind}");
+        assert_eq!(rays(&report)["hits"], rays(&without)["hits"], "{kind}");
+    }
+}
+
 #[test]
 fn sampling_is_asked_for_and_reported() {
     let dir = temporary();

@@ -81,8 +81,9 @@ pub struct Speed {
     /// Spheres that a ray was tested against, on average.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub spheres_per_ray: Option<f64>,
-    /// What part this is of the rays that [`Limit`] allows.
-    pub share_of_limit: f64,
+    /// What part this is of the rays that [`Limit`] allows, if that was measured.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub share_of_limit: Option<f64>,
 }
 
 impl Speed {
@@ -96,7 +97,7 @@ impl Speed {
             mrays_per_s: rays as f64 / seconds.max(1e-12) * 1e-6,
             nodes_per_ray: None,
             spheres_per_ray: None,
-            share_of_limit: 0.0,
+            share_of_limit: None,
         }
     }
 }
@@ -124,7 +125,7 @@ pub struct Plan {
     pub rounds: usize,
 }
 
-/// Measures `scene` on `device`, which has this limit.
+/// Measures `scene` on `device`, which has this limit, if it was measured.
 ///
 /// # Errors
 ///
@@ -135,7 +136,7 @@ pub fn measure(
     scene: &Scene,
     reach: f32,
     plan: Plan,
-    limit: &Limit,
+    limit: Option<&Limit>,
 ) -> Result<Measured> {
     let spheres = &scene.world.spheres;
     let mut builds = Vec::new();
@@ -169,7 +170,8 @@ pub fn measure(
         speed.nodes_per_ray = work.map(|(nodes, _)| nodes);
         speed.spheres_per_ray = work.map(|(_, spheres)| spheres);
         let (nodes, spheres) = work.unwrap_or((0.0, spheres.len() as f64));
-        speed.share_of_limit = speed.mrays_per_s * 1e6 / limit.rays_per_s(kind, nodes, spheres);
+        speed.share_of_limit =
+            limit.map(|limit| speed.mrays_per_s * 1e6 / limit.rays_per_s(kind, nodes, spheres));
     }
     let [primary, shadow, ambient, incoherent] = speeds;
     Ok(Measured {

@@ -225,6 +225,10 @@ pub(super) struct BenchArguments {
     #[arg(long, value_enum, default_value = "auto")]
     pub(super) acceleration: AccelerationChoice,
 
+    /// Do not measure what the device does at most, and say no shares of it
+    #[arg(long)]
+    pub(super) no_limit: bool,
+
     /// How often each kind of ray is timed; the median counts
     #[arg(long, value_name = "N", default_value_t = 7, value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub(super) rounds: u32,

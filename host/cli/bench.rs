@@ -22,7 +22,8 @@ use spherule_kernel::Rung;
 #[derive(Serialize)]
 struct Report<'a> {
     device: String,
-    limit: Limit,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    limit: Option<Limit>,
     scenes: &'a [Measured],
 }
 
@@ -59,17 +60,20 @@ pub(super) fn run(arguments: &BenchArguments) -> Result<ExitCode> {
     // Numbers that a program reads stand alone.
     let to_stdout = arguments.json.as_deref() == Some("-".as_ref());
     let show = |text: &str| if to_stdout { Ok(()) } else { print(text) };
-    let limit = Limit::of(&device)?;
-    show(&format!(
-        "at most {:.0} · 10⁹ operations and {:.0} · 10⁹ bytes a second\n{}",
-        limit.operations_per_s * 1e-9,
-        limit.bytes_per_s * 1e-9,
-        head(size.width, size.height, plan)
-    ))?;
+    let mut limit = None;
+    if !arguments.no_limit {
+        let measured = limit.insert(Limit::of(&device)?);
+        show(&format!(
+            "at most {:.0} · 10⁹ operations and {:.0} · 10⁹ bytes a second\n",
+            measured.operations_per_s * 1e-9,
+            measured.bytes_per_s * 1e-9,
+        ))?;
+    }
+    show(&head(size.width, size.height, plan, limit.is_some()))?;
     let mut all = Vec::new();
     for name in &names {
         let (scene, reach) = scenes::load(name, size.width, size.height)?;
-        let measured = measure(&device, name, &scene, reach, plan, &limit)?;
+        let measured = measure(&device, name, &scene, reach, plan, limit.as_ref())?;
         show(&row(&measured))?;
         all.push(measured);
     }
@@ -140,12 +144,17 @@ fn compare(arguments: &BenchArguments, device: &Device, names: &[String]) -> Res
     })
 }
 
-fn head(width: u32, height: u32, plan: Plan) -> String {
+fn head(width: u32, height: u32, plan: Plan, has_limit: bool) -> String {
     format!(
-        "{width} x {height}, precision {}, medians of {} rounds; Mrays/s of each kind, half of the range in per cent, share of the limit\n\
+        "{width} x {height}, precision {}, medians of {} rounds; Mrays/s of each kind, half of the range in per cent{}\n\
          {:<12} {:>9} {:>5}  {:>20} {:>20} {:>20} {:>20}  {:>10} {:>6}\n",
         plan.rung.name(),
         plan.rounds,
+        if has_limit {
+            ", share of the limit"
+        } else {
+            ""
+        },
         "scene",
         "spheres",
         "tree",
@@ -163,11 +172,12 @@ fn row(measured: &Measured) -> String {
         if speed.rays == 0 {
             "-".to_owned()
         } else {
+            let share = speed.share_of_limit.map(|share| format!(" {share:.2}"));
             format!(
-                "{:.1} ±{:>2.0}% {:.2}",
+                "{:.1} ±{:>2.0}%{}",
                 speed.mrays_per_s,
                 100.0 * speed.spread,
-                speed.share_of_limit
+                share.unwrap_or_default()
             )
         }
     };
