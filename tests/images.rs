@@ -243,7 +243,7 @@ fn naga_renders_the_same() {
 }
 
 /// Tiny bindings, so that the world is split into parts and the image into tiles, and a pace so
-/// slow that each tile takes many launches: the image must not change.
+/// slow that each tile takes many launches, and workgroups too small for lists: the image must not change.
 #[test]
 fn splitting_changes_nothing() {
     if skips("splitting_changes_nothing") {
@@ -265,6 +265,17 @@ fn splitting_changes_nothing() {
                 ..GpuOptions::default()
             },
         );
+        let limits = wgpu::Limits {
+            max_compute_invocations_per_workgroup: 128,
+            ..adapter.limits()
+        };
+        let narrow = open(
+            adapter,
+            GpuOptions {
+                limits: Some(limits),
+                ..GpuOptions::default()
+            },
+        );
         let launch = launch_of(&scene);
         for acceleration in [Acceleration::Tree, Acceleration::BruteForce] {
             let settings = Settings {
@@ -278,6 +289,7 @@ fn splitting_changes_nothing() {
                 render::gpu::render(&whole, &launch, &prepare(&whole), QUIET).expect("whole");
             for (gpu, mut pace) in [
                 (&split, Pace::first_on(&split)),
+                (&narrow, Pace::first_on(&narrow)),
                 (&whole, Pace::starting_at(97 * 20)),
                 (&whole, Pace::starting_at(50)),
             ] {

@@ -136,9 +136,15 @@ impl Prepared {
         let module = kernel_module::for_rung(settings.rung)?
             .specialise(Shading::SPEC_ID, settings.shading.to_u32())?
             .specialise(Node::SPEC_ID, trees.is_some().into())?;
+        // Vulkan promises workgroups of 128 threads only.
+        let has_lists = module.entry_points().iter().any(|entry| {
+            let threads: u32 = entry.workgroup_size.iter().product();
+            entry.name == Search::Lists.entry_point()
+                && threads <= limits.max_compute_invocations_per_workgroup
+        });
         let search = if trees.is_some() {
             Search::Tree
-        } else if count >= MIN_FOR_LISTS {
+        } else if count >= MIN_FOR_LISTS && has_lists {
             Search::Lists
         } else {
             Search::None
