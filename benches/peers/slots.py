@@ -18,11 +18,11 @@ from scene import Scene
 
 SIDE, WARPS, BLOCK, LISTED, STEP, BITS = 32, 8, (4, 8), 256, 4, 32
 # Slots of a warp: once, for two looks at a sphere, for a cone, to put an index on the list.
-ONCE, LOOKS, CONE, PUT = 125, 75, 50, 27
-# Of the one warp that makes the planes.
-PLANES = 90
-# Of a block of 8 x 4 pixels without and with a list, of a step, of a round.
-EMPTY, PIXELS, TESTS, ROUND = 77, 112, 33, 60
+ONCE, LOOKS, CONE, PUT = 150, 76, 38, 26
+# Of the one warp that makes the planes and the rows.
+PLANES = 98
+# Of a block of 8 x 4 pixels without and with a list, of a step, of having more than one of them, of a round.
+EMPTY, PIXELS, TESTS, MORE, ROUND = 25, 81, 25, 13, 50
 LANES = 32
 
 
@@ -45,7 +45,7 @@ def count(scene):
     def film_y(y):
         return (height - 2 * y - 1) / height
 
-    found = dict(tiles=0, listed=0, cones=0, blocks=0, empty=0, steps=0, rounds=0)
+    found = dict(tiles=0, listed=0, cones=0, blocks=0, empty=0, steps=0, longer=0, rounds=0)
     for top in range(0, height, SIDE):
         for left in range(0, width, SIDE):
             planes = [
@@ -73,6 +73,7 @@ def count(scene):
             for base in range(0, len(seen), BITS):
                 some = reaches[:, :, base : base + BITS]
                 found["steps"] += blocks * -(-some.shape[2] // STEP)
+                found["longer"] += blocks * (some.shape[2] > STEP)
                 asked = some.sum(axis=2).reshape(len(rows) // BLOCK[0], BLOCK[0], -1, BLOCK[1])
                 found["rounds"] += int(asked.max(axis=(1, 3)).sum())
     warps = found["tiles"] * WARPS
@@ -85,6 +86,7 @@ def count(scene):
         + found["empty"] * EMPTY
         + (found["blocks"] - found["empty"]) * PIXELS
         + found["steps"] * TESTS
+        + found["longer"] * MORE
         + found["rounds"] * ROUND
     )
     return found

@@ -39,6 +39,8 @@ const RELAXED: u32 = Semantics::NONE.bits();
 pub struct Shared<'a> {
     /// Around the rays of all of its pixels.
     pub planes: &'a mut [Vec4; 4],
+    /// Where its rows of pixels are on the film.
+    pub rows: &'a mut [f32; TILE as usize],
     /// How many spheres are listed, or would be if there were room.
     pub listed: &'a mut u32,
     /// The spheres that may be seen, by their indices. Those of one batch are in no order.
@@ -78,6 +80,11 @@ pub fn render_group(
         let plane = Plane::around(&launch.camera, low, high, thread);
         // SAFETY: there are four.
         unsafe { *shared.planes.index_unchecked_mut(thread as usize) = plane.to_vec4() };
+    }
+    if thread < TILE {
+        let y = film(launch, corner + UVec2::new(0, thread)).y;
+        // SAFETY: as just asked.
+        unsafe { *shared.rows.index_unchecked_mut(thread as usize) = y };
     }
     if thread == 0 {
         *shared.listed = 0;
@@ -127,11 +134,14 @@ pub fn render_group(
                 device_memory_barrier();
             }
             let mut row = 0;
-            while row < TILE {
+            loop {
                 let pixel = first_pixel + UVec2::new(0, row);
+                // SAFETY: there are as many.
+                let upwards =
+                    unsafe { *shared.rows.index_unchecked((pixel.y - corner.y) as usize) };
                 render_listed(
                     pixel,
-                    across,
+                    Vec2::new(across, upwards),
                     count,
                     is_continued,
                     shading,
@@ -144,6 +154,9 @@ pub fn render_group(
                     shared,
                 );
                 row += ROWS;
+                if row >= TILE {
+                    break;
+                }
             }
             is_continued = true;
             if first >= end {
@@ -176,33 +189,39 @@ fn list_seen(
     shared: &mut Shared<'_>,
 ) {
     let mut mine = first + thread;
-    while mine < stop {
-        // All are asked for before the first is looked at, so that a thread waits for memory once.
-        let one = look(spheres, stop, mine);
-        let two = look(spheres, stop, mine + THREADS);
+    if mine >= stop {
+        return;
+    }
+    loop {
+        // SAFETY: `stop` is at most the number of spheres.
+        let look = |index: u32| unsafe { *spheres.index_unchecked(index as usize) };
+        // Both are asked for before the first is looked at, so that a thread waits for memory once.
+        let one = look(mine);
+        let two = look((mine + THREADS).min(stop - 1));
         let mut seen = u32::from(!frustum.misses(one));
         seen |= u32::from(!frustum.misses(two) & (mine + THREADS < stop)) << 1;
-        while seen != 0 {
-            let which = lowest_bit(seen);
-            seen &= seen - 1;
-            // SAFETY: all threads count by atomic additions until they next meet.
-            let place = unsafe { atomic_i_add::<u32, WORKGROUP, RELAXED>(shared.listed, 1) };
-            if place < LISTED as u32 {
-                // SAFETY: as just asked.
-                unsafe {
-                    *shared.list.index_unchecked_mut(place as usize) = mine + which * THREADS;
+        if seen != 0 {
+            loop {
+                let which = lowest_bit(seen);
+                seen &= seen - 1;
+                // SAFETY: all threads count by atomic additions until they next meet.
+                let place = unsafe { atomic_i_add::<u32, WORKGROUP, RELAXED>(shared.listed, 1) };
+                if place < LISTED as u32 {
+                    // SAFETY: as just asked.
+                    unsafe {
+                        *shared.list.index_unchecked_mut(place as usize) = mine + which * THREADS;
+                    }
+                }
+                if seen == 0 {
+                    break;
                 }
             }
         }
         mine += 2 * THREADS;
+        if mine >= stop {
+            break;
+        }
     }
-}
-
-/// The sphere with this index, or the last of those up to `stop`, of which there is one at least.
-#[inline]
-fn look(spheres: &[Sphere], stop: u32, index: u32) -> Sphere {
-    // SAFETY: `stop` is at most the number of spheres.
-    unsafe { *spheres.index_unchecked(index.min(stop - 1) as usize) }
 }
 
 /// Makes the cones of the spheres that are listed, and of none up to whole steps.
@@ -239,7 +258,7 @@ fn put_cones(
 #[inline]
 fn render_listed(
     pixel: UVec2,
-    across: f32,
+    film: Vec2,
     count: u32,
     is_continued: bool,
     shading: u32,
@@ -259,46 +278,65 @@ fn render_listed(
     if (pixel.x >= width) | (pixel.y >= height) | (place >= pixels.len()) {
         return;
     }
+    let blank = launch.blank();
+    if count == 0 {
+        if !is_continued {
+            // SAFETY: as just asked.
+            unsafe { *pixels.index_unchecked_mut(place) = blank };
+        }
+        return;
+    }
     let mut end = Hit::NONE_T;
     if is_continued {
         // SAFETY: as just asked.
         end = unsafe { pixels.index_unchecked(place).depth() };
     }
-    let ray = launch.camera.ray(Vec2::new(across, film(launch, pixel).y));
+    let ray = launch.camera.ray(film);
     let sight = Sight::along(ray.direction);
     let mut nearest = Hit { t: end, sphere: 0 };
     let mut base = 0;
-    while base < count {
+    // Loops test their end where they may go on: of the other shape the driver makes copies of all that changes. No list is empty here.
+    loop {
         let stop = count.next_multiple_of(STEP).min(base + BITS);
-        let mut misses = u32::MAX;
-        let mut at = base;
-        while at < stop {
-            misses = sight.misses(misses, cone(at, shared));
-            misses = sight.misses(misses, cone(at + 1, shared));
-            misses = sight.misses(misses, cone(at + 2, shared));
-            misses = sight.misses(misses, cone(at + 3, shared));
-            at += STEP;
+        let mut misses = step(&sight, u32::MAX, base, shared);
+        let mut at = base + STEP;
+        // Most lists are one step long.
+        if at < stop {
+            loop {
+                misses = step(&sight, misses, at, shared);
+                at += STEP;
+                if at >= stop {
+                    break;
+                }
+            }
         }
         // The last cone's bit is the lowest.
         let mut candidates = !misses;
-        while candidates != 0 {
-            let bit = highest_bit(candidates);
-            candidates ^= 1 << bit;
-            let (index, sphere) = listed(stop - 1 - bit, shared);
-            let t = intersect(rung, sphere, &ray);
-            // Lists are in no order: of two at the same t the first of all spheres is taken.
-            if (t < nearest.t) | ((t == nearest.t) & (index < nearest.sphere)) {
-                nearest = Hit { t, sphere: index };
+        if candidates != 0 {
+            loop {
+                let bit = highest_bit(candidates);
+                candidates ^= 1 << bit;
+                let (index, sphere) = listed(stop - 1 - bit, shared);
+                let t = intersect(rung, sphere, &ray);
+                // Lists are in no order: of two at the same t the first of all spheres is taken.
+                if (t < nearest.t) | ((t == nearest.t) & (index < nearest.sphere)) {
+                    nearest = Hit { t, sphere: index };
+                }
+                if candidates == 0 {
+                    break;
+                }
             }
         }
         base += BITS;
+        if base >= count {
+            break;
+        }
     }
     // What a pixel has from earlier spheres it keeps.
     if !is_continued | (nearest.t < end) {
         if nearest.t >= end {
             nearest = Hit::NONE;
         }
-        let blank = launch.blank();
         let pixel = launch.pixel(
             shading,
             &ray,
@@ -311,6 +349,15 @@ fn render_listed(
         // SAFETY: as above.
         unsafe { *pixels.index_unchecked_mut(place) = pixel };
     }
+}
+
+/// Moves in from the right whether the ray misses each of four cones.
+#[inline]
+fn step(sight: &Sight, before: u32, at: u32, shared: &Shared<'_>) -> u32 {
+    let first = sight.misses(before, cone(at, shared));
+    let second = sight.misses(first, cone(at + 1, shared));
+    let third = sight.misses(second, cone(at + 2, shared));
+    sight.misses(third, cone(at + 3, shared))
 }
 
 /// A sphere of the list, and its index.

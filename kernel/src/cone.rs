@@ -5,21 +5,19 @@
 //! that goes forward meets the sphere where d·h ≥ |d|, which is cos θ ≥ √(1 − r²/o·o). h is shared by all rays from one eye,
 //! and |d| by all spheres.
 //!
-//! In 32-bit floats, u = 2⁻²⁴, cos θ is off by 32u at most: o by u, 1/√c by 16u where a root and a quotient are as bad as Vulkan
-//! allows, their product by u, and the sum of the three products by 3u of |d||h|; |d| by 11u, of which 9u are the root's. c is off by 6u (o·o + r²), and
+//! In 32-bit floats, u = 2⁻²⁴, cos θ is off by 16u at most: o by u, 1/√c by 4u, which are the two units in the last place that Vulkan
+//! allows, their product by u, and the sum of the three products by 3u of |d||h|; |d| by 7u, of which 5u are the root's. c is off by 6u (o·o + r²), and
 //! what a rung calls a hit the exact numbers may miss by 24u (o·o + r²), as the rungs' modules say. Roots of numbers up to 1 that are
-//! apart by δ are apart by δ/2 and more; c is therefore taken less by 96u (o·o + r²), (96 − 6 − 24)/2 being 33, and no rung's hit is passed by. Behind an eye
+//! apart by δ are apart by δ/2 and more; c is therefore taken less by 64u (o·o + r²), (64 − 6 − 24)/2 being 17, and no rung's hit is passed by. Behind an eye
 //! that is outside by as much as that no rung hits.
 
 use glam::{Vec3, Vec4};
-// On the CPU, std has `f32::sqrt`.
-#[cfg(target_arch = "spirv")]
-use spirv_std::num_traits::Float as _;
 
+use crate::instructions::inverse_root;
 use crate::sphere::Sphere;
 
-/// 96u.
-const SLACK: f32 = 1.5 / (1 << 18) as f32;
+/// 64u.
+const SLACK: f32 = 1.0 / (1 << 18) as f32;
 /// Where a square and its root are far from underflow and overflow.
 const SMALLEST: f32 = 1.0 / LARGEST;
 const LARGEST: f32 = (1_u128 << 100) as f32;
@@ -37,7 +35,7 @@ impl Cone {
         let (oo, rr) = (o.dot(o), sphere.radius() * sphere.radius());
         let c = (oo - rr) - SLACK * (oo + rr);
         if (c > SMALLEST) & (c < LARGEST) {
-            Self((o * (1.0 / c.sqrt())).extend(0.0))
+            Self((o * inverse_root(c)).extend(0.0))
         } else {
             Self(Vec3::ZERO.extend(f32::MAX))
         }
@@ -79,7 +77,7 @@ impl Sight {
     pub fn along(direction: Vec3) -> Self {
         let squared = direction.dot(direction);
         let length = if (squared > SMALLEST) & (squared < LARGEST) {
-            squared.sqrt()
+            squared * inverse_root(squared)
         } else {
             -LARGEST
         };

@@ -12,7 +12,7 @@ use crate::by_tiles::{LISTED, Shared, render_group};
 use crate::canary::{Operands, Outcome, sing};
 #[cfg(any(not(target_arch = "spirv"), feature = "f64"))]
 use crate::canary::{WideOutcome, sing_wide};
-use crate::film::render_pixel;
+use crate::film::{TILE, render_pixel};
 use crate::integrate::{Scenery, trace_pixel};
 use crate::nearest::{is_occluded, nearest_hit_in};
 use crate::optics::{Fresnel, Incidence};
@@ -77,6 +77,7 @@ pub fn render_by_tiles(
     #[spirv(storage_buffer, descriptor_set = 0, binding = 3)] materials: &[Material],
     #[spirv(storage_buffer, descriptor_set = 0, binding = 4)] pixels: &mut [Pixel],
     #[spirv(workgroup)] planes: &mut [Vec4; 4],
+    #[spirv(workgroup)] rows: &mut [f32; TILE as usize],
     #[spirv(workgroup)] listed: &mut u32,
     #[spirv(workgroup)] list: &mut [u32; LISTED],
     #[spirv(workgroup)] listed_spheres: &mut [Sphere; LISTED],
@@ -84,6 +85,7 @@ pub fn render_by_tiles(
 ) {
     let mut shared = Shared {
         planes,
+        rows,
         listed,
         list,
         spheres: listed_spheres,

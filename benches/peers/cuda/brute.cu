@@ -42,7 +42,7 @@ __device__ float dot(float3 a, float3 b) { return a.x * b.x + a.y * b.y + a.z * 
 // The way to the sphere's centre, in units of the distance at which rays touch it; and what is added for those that every ray meets.
 __device__ float4 cone(float4 s, float3 eye) {
     float3 o = make_float3(s.x - eye.x, s.y - eye.y, s.z - eye.z);
-    float oo = dot(o, o), rr = s.w * s.w, c = (oo - rr) - (oo + rr) * (1.5f / (1 << 18));
+    float oo = dot(o, o), rr = s.w * s.w, c = (oo - rr) - (oo + rr) * (1.0f / (1 << 18));
     if (!(c > 1e-30f && c < 1e30f)) return make_float4(0.0f, 0.0f, 0.0f, 3.4e38f);
     float scale = rsqrtf(c);
     return make_float4(o.x * scale, o.y * scale, o.z * scale, 0.0f);
@@ -79,9 +79,21 @@ __device__ float solve(float4 s, float3 eye, float3 d) {
     return discriminant >= 0.0f && t >= 1e-30f ? t : 3.4e38f;
 }
 
+// Shifts in whether the ray misses each of a step's cones.
+__device__ unsigned step(unsigned misses, const float4 *cones, float3 d, float length) {
+#pragma unroll
+    for (int k = 0; k < STEP; k++) {
+        float4 h = cones[k];
+        float by = fmaf(d.x, h.x, fmaf(d.y, h.y, fmaf(d.z, h.z, h.w))) - length;
+        misses = __funnelshift_l(__float_as_uint(by), misses, 1);
+    }
+    return misses;
+}
+
 __global__ void tricks(Camera camera, int width, int height, int count, const float4 *spheres,
                        float4 *pixels) {
     __shared__ float3 around[4];
+    __shared__ float rows[SIDE];
     __shared__ int listed, list[LISTED];
     __shared__ float4 near_by[LISTED], cones[LISTED];
     int middle = gridDim.y / 2, away = (blockIdx.y + 1) / 2;
@@ -97,6 +109,8 @@ __global__ void tricks(Camera camera, int width, int height, int count, const fl
         around[thread] = plane(camera.forward, times(along, at), is_across ? camera.up : camera.right,
                                times(along, thread % 2 == 0 ? 1.0f : -1.0f));
     }
+    if (thread < SIDE) rows[thread] = film_y(corner_y + thread, height);
+    float across = film_x(x, width);
     if (thread == 0) listed = 0;
     bool is_continued = false;
     for (int first = 0, before = 0, batch = BATCH; first < count || !is_continued;) {
@@ -137,22 +151,19 @@ __global__ void tricks(Camera camera, int width, int height, int count, const fl
         for (int row = y; row < corner_y + SIDE; row += ROWS) {
             if (x >= width || row >= height) continue;
             float4 *own = pixels + row * width + x;
-            float3 d = direction(camera, x, row, width, height);
+            if (due == 0) {
+                if (!is_continued) *own = pixel(3.4e38f);
+                continue;
+            }
+            float3 d = direction(camera, across, rows[row - corner_y]);
             float length = sqrtf(dot(d, d)), end = is_continued ? own->w : 3.4e38f, nearest = end;
             int found = -1;
 #pragma unroll 1
             for (int base = 0; base < due; base += BITS) {
                 int until = min(padded, base + BITS);
-                unsigned misses = ~0u;
+                unsigned misses = step(~0u, cones + base, d, length);
 #pragma unroll 1
-                for (int i = base; i < until; i += STEP) {
-#pragma unroll
-                    for (int k = 0; k < STEP; k++) {
-                        float4 h = cones[i + k];
-                        float by = fmaf(d.x, h.x, fmaf(d.y, h.y, fmaf(d.z, h.z, h.w))) - length;
-                        misses = __funnelshift_l(__float_as_uint(by), misses, 1);
-                    }
-                }
+                for (int i = base + STEP; i < until; i += STEP) misses = step(misses, cones + i, d, length);
                 for (unsigned rest = ~misses; rest != 0;) {
                     int bit = 31 - __clz(rest), place = until - 1 - bit, index = list[place];
                     rest ^= 1u << bit;

@@ -32,12 +32,16 @@ __host__ __device__ inline float3 times(float3 v, float by) { return make_float3
 __device__ inline float film_x(int x, int width) { return (2 * x + 1 - width) / (float)width; }
 __device__ inline float film_y(int y, int height) { return (height - 2 * y - 1) / (float)height; }
 
-// The direction through a pixel's middle, not of unit length.
-__device__ inline float3 direction(const Camera &camera, int x, int y, int width, int height) {
-    float u = film_x(x, width), v = film_y(y, height);
+// The direction through a point of the film, not of unit length.
+__device__ inline float3 direction(const Camera &camera, float u, float v) {
     return make_float3(camera.forward.x + camera.right.x * u + camera.up.x * v,
                        camera.forward.y + camera.right.y * u + camera.up.y * v,
                        camera.forward.z + camera.right.z * u + camera.up.z * v);
+}
+
+// The direction through a pixel's middle.
+__device__ inline float3 direction(const Camera &camera, int x, int y, int width, int height) {
+    return direction(camera, film_x(x, width), film_y(y, height));
 }
 
 template <class T>
