@@ -78,7 +78,19 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<ExitCode> {
         refuse_same_file(stats, &[&arguments.input, &output])?;
     }
     Image::check_destination(&output)?;
-    let mut scene = Scene::load(&arguments.input)?;
+    let (scene, early, load) = std::thread::scope(|scope| {
+        let opener =
+            opens_early(arguments).then(|| scope.spawn(|| Device::open(&arguments.device)));
+        let scene = Scene::load(&arguments.input);
+        let load = started.elapsed();
+        let early = opener.map(|opener| {
+            opener
+                .join()
+                .unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+        });
+        (scene, early, load)
+    });
+    let mut scene = scene?;
     if let Some(size) = arguments.size {
         (scene.width, scene.height) = (size.width, size.height);
     }
@@ -86,9 +98,7 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<ExitCode> {
     sampling.samples = arguments.samples.or(sampling.samples);
     sampling.max_bounces = arguments.max_bounces.unwrap_or(sampling.max_bounces);
     sampling.seed = arguments.seed.unwrap_or(sampling.seed);
-    let load = started.elapsed();
 
-    let opening = Instant::now();
     let is_brief = || {
         let threads = rayon::current_num_threads();
         estimate::is_brief(&scene, arguments.shade.into(), arguments.effects, threads)
@@ -97,9 +107,9 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<ExitCode> {
         if arguments.device == DeviceChoice::Auto && !arguments.check && is_brief() {
             (Device::Cpu, "done before a GPU would be open".into())
         } else {
-            Device::open(&arguments.device)?
+            early.unwrap_or_else(|| Device::open(&arguments.device))?
         };
-    let opening = opening.elapsed();
+    let opening = started.elapsed() - load;
     // Opened before the work, so that a check that cannot be is known at once.
     let other = match (&device, arguments.check) {
         (_, false) => None,
@@ -227,6 +237,20 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<ExitCode> {
     } else {
         ExitCode::FAILURE
     })
+}
+
+/// Files from this size on take longer to read than a GPU to open, and what is in them longer to trace.
+const LARGE_FILE: u64 = 1 << 26;
+
+/// Whether the device is opened while the file is read: it is a GPU for certain, or `auto` will look for one.
+fn opens_early(arguments: &RenderArguments) -> bool {
+    match arguments.device {
+        DeviceChoice::Cpu => false,
+        DeviceChoice::Gpu | DeviceChoice::Named(_) => true,
+        DeviceChoice::Auto => {
+            std::fs::metadata(&arguments.input).is_ok_and(|metadata| metadata.len() >= LARGE_FILE)
+        }
+    }
 }
 
 /// The rung that was asked for, or else the one that the scene calls for; and why.
