@@ -10,11 +10,13 @@
 //! | [`tree`] | boxes around the spheres of a world |
 //! | [`molecule`] | molecules from PDB and XYZ files |
 //! | [`environment`] | images of the surroundings |
+//! | `text` | text files of any size |
 
 pub mod effects;
 pub mod environment;
 pub mod molecule;
 pub mod surroundings;
+mod text;
 pub mod toml_file;
 pub mod tree;
 pub mod view;
@@ -132,33 +134,4 @@ fn extension(path: &Path) -> String {
     path.extension()
         .map(|extension| extension.to_string_lossy().to_lowercase())
         .unwrap_or_default()
-}
-
-/// Reads a whole text file.
-fn read_text(path: &Path) -> Result<String> {
-    let bytes = std::fs::read(path).map_err(|error| {
-        let (message, help) = match error.kind() {
-            std::io::ErrorKind::NotFound => (
-                "there is no such file".to_owned(),
-                "check the name; a relative name counts from the current directory, or, inside a scene, from the scene's",
-            ),
-            std::io::ErrorKind::IsADirectory => (
-                "is a directory".to_owned(),
-                "name a file",
-            ),
-            _ => (
-                format!("cannot be read: {error}"),
-                "check that the file may be read",
-            ),
-        };
-        SceneError::without_place(path, message, help)
-    })?;
-    String::from_utf8(bytes).map_err(|error| {
-        let at = error.utf8_error().valid_up_to();
-        Error::Scene(SceneError::without_place(
-            path,
-            format!("byte {at} is not UTF-8 text"),
-            "save the file as UTF-8; compressed files must be unpacked first",
-        ))
-    })
 }

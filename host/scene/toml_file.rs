@@ -11,7 +11,8 @@ use toml::Spanned;
 
 use super::surroundings::{FogBall, Lens, PointLight, Sun, Surroundings, Tonemap};
 use super::{
-    MAX_IMAGE_SIDE, MAX_LENGTH, MAX_SAMPLES, Scene, View, World, environment, molecule, read_text,
+    MAX_IMAGE_SIDE, MAX_LENGTH, MAX_SAMPLES, Scene, View, World, environment, molecule,
+    text::read_text,
 };
 use crate::error::{Error, Place, Result, SceneError};
 

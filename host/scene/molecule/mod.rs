@@ -11,8 +11,9 @@ use glam::Vec3;
 use rayon::prelude::*;
 use spherule_kernel::{Material, Sphere};
 
+use super::extension;
+use super::text::read_text;
 use super::world::{GRAIN, World};
-use super::{extension, read_text};
 use crate::error::{Error, Place, Result, SceneError};
 use elements::Element;
 
@@ -53,24 +54,25 @@ pub fn load(path: &Path) -> Result<World> {
 #[must_use]
 pub fn world(atoms: &[Atom]) -> World {
     let mut world = World::default();
-    let unknown = atoms
-        .iter()
-        .filter(|atom| atom.element.symbol == elements::UNKNOWN.symbol)
-        .count();
-    if unknown > 0 {
+    let elements = elements_of(atoms);
+    let is_unknown = |element: &Element| element.symbol == elements::UNKNOWN.symbol;
+    if elements.iter().any(|element| is_unknown(element)) {
+        let unknown = atoms
+            .par_iter()
+            .filter(|atom| is_unknown(atom.element))
+            .count();
         tracing::warn!(
             "{unknown} atoms are of an element that cannot be told; they are drawn pink, with a radius of {} Å",
             elements::UNKNOWN.radius
         );
     }
-    // In the order in which they occur; few, so that looking through them is fastest.
-    let mut ids: Vec<(&str, u32)> = Vec::new();
-    for element in atoms.iter().map(|atom| atom.element) {
-        if !ids.iter().any(|(symbol, _)| *symbol == element.symbol) {
-            let id = world.add_material(Material::diffuse(linear(element.color)));
-            ids.push((element.symbol, id));
-        }
-    }
+    let ids: Vec<(&str, u32)> = elements
+        .iter()
+        .map(|element| {
+            let material = Material::diffuse(linear(element.color));
+            (element.symbol, world.add_material(material))
+        })
+        .collect();
     let id_of = |atom: &Atom| {
         let known = ids
             .iter()
@@ -83,6 +85,22 @@ pub fn world(atoms: &[Atom]) -> World {
         .collect();
     world.material_ids = atoms().map(id_of).collect();
     world
+}
+
+/// The elements that occur, in the order in which they do: few, so that looking through them is fastest.
+fn elements_of(atoms: &[Atom]) -> Vec<&'static Element> {
+    let add = |mut known: Vec<&'static Element>, element: &'static Element| {
+        if !known.iter().any(|other| other.symbol == element.symbol) {
+            known.push(element);
+        }
+        known
+    };
+    atoms
+        .par_chunks(GRAIN)
+        .map(|some| some.iter().map(|atom| atom.element).fold(Vec::new(), add))
+        .reduce(Vec::new, |before, after| {
+            after.into_iter().fold(before, add)
+        })
 }
 
 /// What is wrong with a line of a molecule file.

@@ -4,6 +4,8 @@
 //! follows on its line is ignored. Of several frames the first is read. The column order of
 //! "extended XYZ" is honoured as far as element and position come first, as they do by default.
 
+use std::mem::MaybeUninit;
+
 use glam::Vec3;
 use rayon::prelude::*;
 
@@ -50,16 +52,11 @@ pub fn parse(text: &str) -> Result<Vec<Atom>, WrongLine> {
     }
 
     let (blocks, lines) = blocks(rest, count);
-    let read: Vec<Block> = blocks
-        .into_par_iter()
-        .map(|(before, block)| read_block(FIRST_ATOM + before, block))
-        .collect();
-    let mut atoms = Vec::with_capacity(read.iter().map(|block| block.atoms.len()).sum());
+    let mut atoms = Vec::with_capacity(lines);
     let mut dummies = 0;
-    for block in read {
-        atoms.extend(block.atoms);
-        dummies += block.dummies;
-        match block.wrong {
+    for read in read_blocks(&blocks, &mut atoms) {
+        dummies += read.dummies;
+        match read.wrong {
             None => {}
             Some((line, Wrong::Blank)) => return Err(missing(line, count, line - FIRST_ATOM)),
             Some((line, Wrong::Coordinate)) => {
@@ -94,34 +91,59 @@ const FIRST_ATOM: usize = 2;
 /// Bytes that a thread reads at once.
 const BLOCK: usize = 1 << 18;
 
-/// The first `count` lines, or all that there are, in blocks of whole lines, with how many come before
-/// each; and how many there are.
-fn blocks(text: &str, count: usize) -> (Vec<(usize, &str)>, usize) {
+/// Blocks that are cut before it is asked whether they are enough: another frame may follow.
+const AT_ONCE: usize = 256;
+
+/// Whole lines of a file.
+struct Block<'a> {
+    /// How many of the frame's atoms come before.
+    before: usize,
+    lines: usize,
+    text: &'a str,
+}
+
+/// The first `count` lines, or all that there are, in blocks; and how many they are.
+fn blocks(text: &str, count: usize) -> (Vec<Block<'_>>, usize) {
     let mut blocks = Vec::new();
     let (mut rest, mut before) = (text, 0);
     while before < count && !rest.is_empty() {
-        let end = rest.as_bytes()[BLOCK.min(rest.len())..]
-            .iter()
-            .position(|byte| *byte == b'\n')
-            .map_or(rest.len(), |at| BLOCK + at + 1);
-        let mut block = &rest[..end];
-        let mut lines = block.bytes().filter(|byte| *byte == b'\n').count();
-        lines += usize::from(!block.ends_with('\n'));
-        if lines > count - before {
-            lines = count - before;
-            block = &block[..block.split_inclusive('\n').take(lines).map(str::len).sum()];
+        let mut cut = Vec::new();
+        while cut.len() < AT_ONCE && !rest.is_empty() {
+            let end = rest.as_bytes()[BLOCK.min(rest.len())..]
+                .iter()
+                .position(|byte| *byte == b'\n')
+                .map_or(rest.len(), |at| BLOCK + at + 1);
+            cut.push(&rest[..end]);
+            rest = &rest[end..];
         }
-        blocks.push((before, block));
-        before += lines;
-        rest = &rest[end..];
+        let all_lines: Vec<usize> = cut.par_iter().map(|text| lines_of(text)).collect();
+        for (mut text, mut lines) in cut.into_iter().zip(all_lines) {
+            if lines > count - before {
+                lines = count - before;
+                text = &text[..text.split_inclusive('\n').take(lines).map(str::len).sum()];
+            }
+            if lines > 0 {
+                blocks.push(Block {
+                    before,
+                    lines,
+                    text,
+                });
+            }
+            before += lines;
+        }
     }
     (blocks, before)
 }
 
-/// What some lines hold.
-#[derive(Default)]
-struct Block {
-    atoms: Vec<Atom>,
+/// How many lines a text has, the last of which need not end.
+fn lines_of(text: &str) -> usize {
+    let ends = text.bytes().filter(|byte| *byte == b'\n').count();
+    ends + usize::from(!text.ends_with('\n'))
+}
+
+/// What else was found in a block than atoms.
+struct Read {
+    atoms: usize,
     dummies: usize,
     /// The first line that is wrong, after which nothing was read.
     wrong: Option<(usize, Wrong)>,
@@ -132,34 +154,74 @@ enum Wrong {
     Coordinate,
 }
 
-/// Reads lines, the first of which is line `first` of the file.
-fn read_block(first: usize, text: &str) -> Block {
-    let mut block = Block::default();
-    for (number, line) in text.lines().enumerate() {
-        let mut fields = line.split_whitespace();
+/// Adds the atoms of all blocks, each to its place; what else was found, block by block.
+fn read_blocks(blocks: &[Block<'_>], atoms: &mut Vec<Atom>) -> Vec<Read> {
+    let mut rooms = Vec::with_capacity(blocks.len());
+    let mut rest = atoms.spare_capacity_mut();
+    for block in blocks {
+        let (room, others) = rest.split_at_mut(block.lines);
+        rooms.push(room);
+        rest = others;
+    }
+    let read: Vec<Read> = blocks
+        .par_iter()
+        .zip(rooms)
+        .map(|(block, room)| read_block(block, room))
+        .collect();
+    // Where there are dummies, those that follow move up.
+    let (mut from, mut to) = (0, 0);
+    let room = atoms.spare_capacity_mut();
+    for (block, read) in blocks.iter().zip(&read) {
+        if from != to {
+            room.copy_within(from..from + read.atoms, to);
+        }
+        from += block.lines;
+        to += read.atoms;
+    }
+    // SAFETY: each block's atoms were written from where its lines begin, and moved up to the last of the block before.
+    unsafe { atoms.set_len(to) };
+    read
+}
+
+/// Reads the atoms of a block into its room, which has one for each line.
+fn read_block(block: &Block<'_>, room: &mut [MaybeUninit<Atom>]) -> Read {
+    let first = FIRST_ATOM + block.before;
+    let mut read = Read {
+        atoms: 0,
+        dummies: 0,
+        wrong: None,
+    };
+    // Neighbours are often of one element.
+    let mut last = ("", None);
+    for (number, line) in block.text.lines().enumerate() {
+        let mut fields = line.split_ascii_whitespace();
         let Some(symbol) = fields.next() else {
-            block.wrong = Some((first + number, Wrong::Blank));
+            read.wrong = Some((first + number, Wrong::Blank));
             break;
         };
         let mut coordinate = || fields.next().and_then(number_of);
         let (Some(x), Some(y), Some(z)) = (coordinate(), coordinate(), coordinate()) else {
-            block.wrong = Some((first + number, Wrong::Coordinate));
+            read.wrong = Some((first + number, Wrong::Coordinate));
             break;
         };
-        let element = match element(symbol) {
+        if symbol != last.0 {
+            last = (symbol, element(symbol));
+        }
+        let element = match last.1 {
             Some(element) => element,
             None if matches!(symbol, "X" | "x" | "Xx" | "XX" | "0") => {
-                block.dummies += 1;
+                read.dummies += 1;
                 continue;
             }
             None => &elements::UNKNOWN,
         };
-        block.atoms.push(Atom {
+        room[read.atoms].write(Atom {
             position: Vec3::new(x, y, z),
             element,
         });
+        read.atoms += 1;
     }
-    block
+    read
 }
 
 fn missing(line: usize, expected: usize, found: usize) -> WrongLine {
@@ -228,6 +290,15 @@ mod tests {
         for (index, atom) in atoms.iter().enumerate() {
             assert_eq!(atom.position.x, index as f32);
         }
+        let with_dummies = text
+            .replace("H 17 ", "X 17 ")
+            .replace("H 30000 ", "Xx 30000 ");
+        let atoms = parse(&with_dummies).expect("atoms");
+        let expected: Vec<f32> = (0..count)
+            .filter(|atom| ![17, 30_000].contains(atom))
+            .map(|atom| atom as f32)
+            .collect();
+        assert!(atoms.iter().map(|atom| atom.position.x).eq(expected));
         let wrong = text.replace("H 39990 0", "H 39990 none");
         assert_eq!(parse(&wrong).expect_err("a word").line, 39_992);
         let promise = text.replacen("40000", "40004", 1);
