@@ -191,4 +191,19 @@ mod tests {
         assert_eq!(world.material_ids, [0, 0]);
         assert_eq!(world.spheres[0].radius(), 1.7);
     }
+
+    #[test]
+    fn materials_stand_in_the_order_of_their_first_atoms() {
+        let symbols = ["o", "h", "c", "h"];
+        let atoms: Vec<Atom> = symbols
+            .iter()
+            .flat_map(|symbol| {
+                let element = elements::by_symbol(symbol).expect("an element");
+                let position = Vec3::ZERO;
+                std::iter::repeat_n(Atom { position, element }, GRAIN)
+            })
+            .collect();
+        let ids = world(&atoms).material_ids;
+        assert_eq!([0, 1, 2, 3].map(|run| ids[run * GRAIN]), [0, 1, 2, 1]);
+    }
 }
