@@ -1,7 +1,7 @@
 //! Text files, large ones read by all threads.
 
 use std::fs::File;
-use std::io;
+use std::io::{self, Read};
 use std::path::Path;
 
 use rayon::prelude::*;
@@ -48,14 +48,19 @@ const PIECE: usize = 1 << 22;
 
 /// Reads a whole file.
 fn read_bytes(path: &Path) -> io::Result<Vec<u8>> {
-    let file = File::open(path)?;
+    let mut file = File::open(path)?;
     let length = file.metadata()?.len();
     match usize::try_from(length) {
         // Where there is no room, what follows says so.
         Ok(length) if length as u64 >= LARGE_FILE && has_room(length) => {
             read_in_pieces(&file, length, PIECE)
         }
-        _ => std::fs::read(path),
+        // What is no file has a length of zero, and may be opened once only.
+        _ => {
+            let mut bytes = Vec::new();
+            file.read_to_end(&mut bytes)?;
+            Ok(bytes)
+        }
     }
 }
 
