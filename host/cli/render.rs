@@ -239,18 +239,11 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<ExitCode> {
     })
 }
 
-/// Files from this size on take longer to read than a GPU to open, and what is in them longer to trace.
-const LARGE_FILE: u64 = 1 << 26;
-
-/// Whether the device is opened while the file is read: it is a GPU for certain, or `auto` will look for one.
+/// Whether the device is opened while the file is read: it is a GPU for certain, and there is a file. What `auto` takes
+/// depends on what is in it.
 fn opens_early(arguments: &RenderArguments) -> bool {
-    match arguments.device {
-        DeviceChoice::Cpu => false,
-        DeviceChoice::Gpu | DeviceChoice::Named(_) => true,
-        DeviceChoice::Auto => {
-            std::fs::metadata(&arguments.input).is_ok_and(|metadata| metadata.len() >= LARGE_FILE)
-        }
-    }
+    let is_gpu = matches!(arguments.device, DeviceChoice::Gpu | DeviceChoice::Named(_));
+    is_gpu && arguments.input.is_file()
 }
 
 /// The rung that was asked for, or else the one that the scene calls for; and why.

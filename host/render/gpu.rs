@@ -20,7 +20,7 @@ use crate::kernel_module;
 use crate::scene::World;
 use crate::scene::tree::{self, Tree};
 
-/// From how many spheres on a tree is grown. Where they lie evenly, lists for each tile are up to three and a half times as fast and stay ahead up to
+/// From how many spheres on a tree is grown. Where they lie evenly, lists for each tile are up to four times as fast and stay ahead up to
 /// 30,000; where most lie in a few tiles, a tree is ahead long before, and at 5,000 six times as fast.
 const MIN_FOR_TREE: usize = 512;
 /// From this many spheres on, those without a tree are listed for each tile.

@@ -300,7 +300,7 @@ fn render_listed(
         let stop = count.next_multiple_of(STEP).min(base + BITS);
         let mut misses = step(&sight, u32::MAX, base, shared);
         let mut at = base + STEP;
-        // Most lists are one step long.
+        // Of few spheres most lists are one step long.
         if at < stop {
             loop {
                 misses = step(&sight, misses, at, shared);

@@ -6,9 +6,9 @@
 //! and |d| by all spheres.
 //!
 //! In 32-bit floats, u = 2⁻²⁴, cos θ is off by 16u at most: o by u, 1/√c by 4u, which are the two units in the last place that Vulkan
-//! allows, their product by u, and the sum of the three products by 3u of |d||h|; |d| by 7u, of which 5u are the root's. c is off by 6u (o·o + r²), and
-//! what a rung calls a hit the exact numbers may miss by 24u (o·o + r²), as the rungs' modules say. Roots of numbers up to 1 that are
-//! apart by δ are apart by δ/2 and more; c is therefore taken less by 64u (o·o + r²), (64 − 6 − 24)/2 being 17, and no rung's hit is passed by. Behind an eye
+//! allows, their product by u, and the sum of the three products by 3u of |d||h|; |d| by 7u, of which 5u are the root's. c is off by 7u (o·o + r²), and
+//! what a rung calls a hit the exact numbers may miss by 24u (o·o + r²), as [`tree`](crate::tree) says. Roots of numbers up to 1 that are
+//! apart by δ are apart by δ/2 and more; c is therefore taken less by 64u (o·o + r²), (64 − 7 − 24)/2 being 16.5, and no rung's hit is passed by. Behind an eye
 //! that is outside by as much as that no rung hits.
 
 use glam::{Vec3, Vec4};

@@ -8,7 +8,7 @@
 //! In 32-bit floats, u = 2⁻²⁴, s is off by 4u|o| for its terms. A plane is taken only where F + x₀ R is at least half as long as its terms
 //! would be at a right angle, is apart from U by 30° and more, and n is off the plane across R by as much: then n is off by 17u, and
 //! the terms of every direction inside are at most 17 times as long as itself, so that rays leave the plane by 51u|o|.
-//! That makes 144u o·o of s². What a rung calls a hit the exact numbers may miss by 24u (o·o + r²), as the rungs' modules say. r² is
+//! That makes 144u o·o of s². What a rung calls a hit the exact numbers may miss by 24u (o·o + r²), as [`tree`](crate::tree) says. r² is
 //! therefore taken more by 256u (o·o + r²), and no rung's hit is lost.
 
 use glam::{Vec2, Vec3, Vec4};

@@ -1,5 +1,5 @@
-//! Single instructions of a GPU that Rust's own functions do not become: those compare and choose, or mind
-//! what happens to zero. Runs on the GPU and on the CPU.
+//! Single instructions of a GPU that Rust's own functions do not become: those compare and choose, mind
+//! what happens to zero, or are two. Runs on the GPU and on the CPU.
 
 #[cfg(target_arch = "spirv")]
 use core::arch::asm;

@@ -52,7 +52,15 @@ pub fn parse(text: &str) -> Result<Vec<Atom>, WrongLine> {
     }
 
     let (blocks, lines) = blocks(rest, count);
-    let mut atoms = Vec::with_capacity(lines);
+    let mut atoms = Vec::new();
+    atoms.try_reserve_exact(lines).map_err(|_| {
+        WrongLine::new(
+            0,
+            format!("there is no memory for {lines} atoms"),
+            "too many",
+            "use a machine with more memory, or fewer atoms",
+        )
+    })?;
     let mut dummies = 0;
     for read in read_blocks(&blocks, &mut atoms) {
         dummies += read.dummies;
@@ -194,7 +202,7 @@ fn read_block(block: &Block<'_>, room: &mut [MaybeUninit<Atom>]) -> Read {
     // Neighbours are often of one element.
     let mut last = ("", None);
     for (number, line) in block.text.lines().enumerate() {
-        let mut fields = line.split_ascii_whitespace();
+        let mut fields = line.split_whitespace();
         let Some(symbol) = fields.next() else {
             read.wrong = Some((first + number, Wrong::Blank));
             break;
