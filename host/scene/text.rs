@@ -16,11 +16,11 @@ use crate::error::{Error, Result, SceneError};
 pub(super) fn read_text(path: &Path) -> Result<String> {
     let bytes = read_bytes(path).map_err(|error| {
         let (message, help) = match error.kind() {
-            std::io::ErrorKind::NotFound => (
+            io::ErrorKind::NotFound => (
                 "there is no such file".to_owned(),
                 "check the name; a relative name counts from the current directory, or, inside a scene, from the scene's",
             ),
-            std::io::ErrorKind::IsADirectory => (
+            io::ErrorKind::IsADirectory => (
                 "is a directory".to_owned(),
                 "name a file",
             ),

@@ -4,25 +4,33 @@
 #[cfg(target_arch = "spirv")]
 use core::arch::asm;
 
+/// An instruction of `GLSL.std.450` that touches no memory, by its number; its operands and result are of one type.
+#[cfg(target_arch = "spirv")]
+macro_rules! glsl {
+    ($number:literal, $type:literal, $($operand:ident),+) => {{
+        let result;
+        // SAFETY: it touches no memory.
+        unsafe {
+            asm!(
+                "%glsl = OpExtInstImport \"GLSL.std.450\"",
+                concat!("%type = ", $type),
+                concat!("{result} = OpExtInst %type %glsl ", $number, $(" {", stringify!($operand), "}"),+),
+                $($operand = in(reg) $operand,)+
+                result = out(reg) result,
+            );
+        }
+        result
+    }};
+}
+
 /// The larger of two integers.
 #[inline]
 #[must_use]
 pub fn larger(a: i32, b: i32) -> i32 {
     #[cfg(target_arch = "spirv")]
     {
-        let result: i32;
-        // SAFETY: SMax of GLSL.std.450, which touches no memory.
-        unsafe {
-            asm!(
-                "%glsl = OpExtInstImport \"GLSL.std.450\"",
-                "%int = OpTypeInt 32 1",
-                "{result} = OpExtInst %int %glsl 42 {a} {b}",
-                a = in(reg) a,
-                b = in(reg) b,
-                result = out(reg) result,
-            );
-        }
-        result
+        // SMax
+        glsl!("42", "OpTypeInt 32 1", a, b)
     }
     #[cfg(not(target_arch = "spirv"))]
     a.max(b)
@@ -34,19 +42,8 @@ pub fn larger(a: i32, b: i32) -> i32 {
 pub fn smaller(a: i32, b: i32) -> i32 {
     #[cfg(target_arch = "spirv")]
     {
-        let result: i32;
-        // SAFETY: SMin of GLSL.std.450, which touches no memory.
-        unsafe {
-            asm!(
-                "%glsl = OpExtInstImport \"GLSL.std.450\"",
-                "%int = OpTypeInt 32 1",
-                "{result} = OpExtInst %int %glsl 39 {a} {b}",
-                a = in(reg) a,
-                b = in(reg) b,
-                result = out(reg) result,
-            );
-        }
-        result
+        // SMin
+        glsl!("39", "OpTypeInt 32 1", a, b)
     }
     #[cfg(not(target_arch = "spirv"))]
     a.min(b)
@@ -58,18 +55,8 @@ pub fn smaller(a: i32, b: i32) -> i32 {
 pub fn highest_bit(bits: u32) -> u32 {
     #[cfg(target_arch = "spirv")]
     {
-        let result: u32;
-        // SAFETY: FindUMsb of GLSL.std.450, which touches no memory.
-        unsafe {
-            asm!(
-                "%glsl = OpExtInstImport \"GLSL.std.450\"",
-                "%uint = OpTypeInt 32 0",
-                "{result} = OpExtInst %uint %glsl 75 {bits}",
-                bits = in(reg) bits,
-                result = out(reg) result,
-            );
-        }
-        result
+        // FindUMsb
+        glsl!("75", "OpTypeInt 32 0", bits)
     }
     #[cfg(not(target_arch = "spirv"))]
     {
@@ -83,18 +70,8 @@ pub fn highest_bit(bits: u32) -> u32 {
 pub fn lowest_bit(bits: u32) -> u32 {
     #[cfg(target_arch = "spirv")]
     {
-        let result: u32;
-        // SAFETY: FindILsb of GLSL.std.450, which touches no memory.
-        unsafe {
-            asm!(
-                "%glsl = OpExtInstImport \"GLSL.std.450\"",
-                "%uint = OpTypeInt 32 0",
-                "{result} = OpExtInst %uint %glsl 73 {bits}",
-                bits = in(reg) bits,
-                result = out(reg) result,
-            );
-        }
-        result
+        // FindILsb
+        glsl!("73", "OpTypeInt 32 0", bits)
     }
     #[cfg(not(target_arch = "spirv"))]
     {
@@ -108,18 +85,8 @@ pub fn lowest_bit(bits: u32) -> u32 {
 pub fn inverse_root(x: f32) -> f32 {
     #[cfg(target_arch = "spirv")]
     {
-        let result: f32;
-        // SAFETY: InverseSqrt of GLSL.std.450, which touches no memory.
-        unsafe {
-            asm!(
-                "%glsl = OpExtInstImport \"GLSL.std.450\"",
-                "%float = OpTypeFloat 32",
-                "{result} = OpExtInst %float %glsl 32 {x}",
-                x = in(reg) x,
-                result = out(reg) result,
-            );
-        }
-        result
+        // InverseSqrt
+        glsl!("32", "OpTypeFloat 32", x)
     }
     #[cfg(not(target_arch = "spirv"))]
     {

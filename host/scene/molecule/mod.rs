@@ -66,18 +66,13 @@ pub fn world(atoms: &[Atom]) -> World {
             elements::UNKNOWN.radius
         );
     }
-    let ids: Vec<(&str, u32)> = elements
-        .iter()
-        .map(|element| {
-            let material = Material::diffuse(linear(element.color));
-            (element.symbol, world.add_material(material))
-        })
-        .collect();
+    // Each element's material has its place among them.
+    for element in &elements {
+        world.add_material(Material::diffuse(linear(element.color)));
+    }
     let id_of = |atom: &Atom| {
-        let known = ids
-            .iter()
-            .find(|(symbol, _)| *symbol == atom.element.symbol);
-        known.map_or(0, |(_, id)| *id)
+        let is_its = |element: &&Element| element.symbol == atom.element.symbol;
+        elements.iter().position(is_its).map_or(0, |id| id as u32)
     };
     let atoms = || atoms.par_iter().with_min_len(GRAIN);
     world.spheres = atoms()
