@@ -12,8 +12,9 @@ use spherule::kernel::integrate::luminance;
 use spherule::kernel::{Effects, Material, Rung, Sphere};
 use spherule::render::paths::{EffectChoice, StoppedBy};
 use spherule::render::{QUIET, Settings, render};
+use spherule::scene::limits::MAX_SAMPLES;
 use spherule::scene::surroundings::{EnvironmentImage, PointLight, Sun, Surroundings, Tonemap};
-use spherule::scene::{MAX_SAMPLES, View, World};
+use spherule::scene::{View, World};
 use spherule::{Device, Image, Scene};
 
 /// The scenes of the gallery, small.

@@ -9,7 +9,8 @@ use crate::error::Result;
 use crate::film::Image;
 use crate::film::flip::mean_flip;
 use crate::render::{QUIET, Settings, render};
-use crate::scene::{MAX_SAMPLES, Scene};
+use crate::scene::Scene;
+use crate::scene::limits::MAX_SAMPLES;
 
 /// How many more samples the reference has than the last step.
 const REFERENCE: u32 = 16;

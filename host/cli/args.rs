@@ -11,8 +11,8 @@ use crate::accuracy::families::Family;
 use crate::device::DeviceChoice;
 use crate::film::file::Format;
 use crate::render::paths::EffectChoice;
+use crate::scene::limits::{MAX_BOUNCES, MAX_IMAGE_SIDE, MAX_SAMPLES};
 use crate::scene::tree::Acceleration;
-use crate::scene::{MAX_IMAGE_SIDE, MAX_SAMPLES};
 
 /// A ray tracer for spheres, whose kernel is Rust on the GPU and on the CPU.
 #[derive(Debug, Parser)]
@@ -77,7 +77,7 @@ pub(super) struct RenderArguments {
     pub(super) samples: Option<u32>,
 
     /// How often light is reflected or scattered on its way, at most [default: the scene's, or 8]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=10_000))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=i64::from(MAX_BOUNCES)))]
     pub(super) max_bounces: Option<u32>,
 
     /// Another seed is another image of the same expectation [default: the scene's, or 0]

@@ -4,6 +4,7 @@
 //! | --- | --- |
 //! | [`world`] | [`World`]: the spheres and their materials, in the device's own types |
 //! | [`view`] | [`View`]: where the camera is, given or framed around the world |
+//! | [`limits`] | what the numbers of a scene may be |
 //! | [`surroundings`] | light, sky, fog, lens: what there is besides spheres |
 //! | [`mod@effects`] | which effects a scene calls for, and by what |
 //! | [`toml_file`] | scenes written by a person |
@@ -14,6 +15,7 @@
 
 pub mod effects;
 pub mod environment;
+pub mod limits;
 pub mod molecule;
 pub mod surroundings;
 mod text;
@@ -30,17 +32,6 @@ use crate::error::{Error, Result, SceneError};
 pub use surroundings::{Develop, FogBall, Lens, PointLight, Sampling, Surroundings};
 pub use view::View;
 pub use world::World;
-
-/// The largest width or height of an image, in pixels.
-pub const MAX_IMAGE_SIDE: u32 = 65_536;
-
-/// The most samples a pixel: they are added up in 32-bit floats, whose roundings stay below a
-/// thousandth of each sample up to here.
-pub const MAX_SAMPLES: u32 = 1 << 16;
-
-/// The largest coordinate or radius, in scene units: the sum of three squares of twice this is
-/// still a 32-bit float.
-pub const MAX_LENGTH: f32 = 1e18;
 
 /// A world, a view of it, and the image to make.
 #[derive(Clone, Debug)]

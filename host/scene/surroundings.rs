@@ -1,5 +1,8 @@
 //! What a scene has besides spheres: light, a sky, a medium, a lens, and how it is sampled.
 
+use std::f32::consts::PI;
+use std::f64::consts::FRAC_PI_2;
+
 use glam::Vec3;
 use spherule_kernel::fog::Fog;
 
@@ -35,6 +38,27 @@ pub struct Sun {
     pub size: f32,
     /// The irradiance of a surface that faces it.
     pub irradiance: Vec3,
+}
+
+impl Sun {
+    /// The angle between its middle and its edge, in radians.
+    fn half_angle(&self) -> f64 {
+        0.5 * f64::from(self.size).to_radians()
+    }
+
+    /// One minus the cosine of the angle between its middle and its edge.
+    #[must_use]
+    pub fn height(&self) -> f32 {
+        (2.0 * (0.5 * self.half_angle()).sin().powi(2)) as f32
+    }
+
+    /// The radiance of its disc; `None` if it has no extent.
+    #[must_use]
+    pub fn radiance(&self) -> Option<Vec3> {
+        // E = L π sin² of the half angle, while the disc is above the horizon.
+        let squared_sine = self.half_angle().min(FRAC_PI_2).sin().powi(2) as f32;
+        (self.height() > 0.0).then(|| self.irradiance / (PI * squared_sine))
+    }
 }
 
 /// An equirectangular image of the surroundings.

@@ -9,11 +9,9 @@ use spherule_kernel::fog::Fog;
 use spherule_kernel::{Material, Sphere};
 use toml::Spanned;
 
+use super::limits::{self, Range};
 use super::surroundings::{FogBall, Lens, PointLight, Sun, Surroundings, Tonemap};
-use super::{
-    MAX_IMAGE_SIDE, MAX_LENGTH, MAX_SAMPLES, Scene, View, World, environment, molecule,
-    text::read_text,
-};
+use super::{Scene, View, World, environment, molecule, text::read_text};
 use crate::error::{Error, Place, Result, SceneError};
 
 /// The angle across the sun as it is seen from the Earth, in degrees.
@@ -189,7 +187,12 @@ struct Reader<'a> {
 
 impl Reader<'_> {
     fn scene(&self, file: File) -> Result<Scene> {
-        let mut scene = Scene::new(self.world(&file)?);
+        let lens = match &file.camera {
+            Some(camera) => self.lens(camera.get_ref())?,
+            None => Lens::default(),
+        };
+        let mut scene = Scene::new(self.world(&file, lens.shutter)?);
+        scene.lens = lens;
         if let Some(width) = &file.image.width {
             scene.width = self.side("width", width)?;
         }
@@ -197,11 +200,10 @@ impl Reader<'_> {
             scene.height = self.side("height", height)?;
         }
         if let Some(background) = &file.image.background {
-            scene.background = self.color("background", background)?;
+            scene.background = self.color("background", background, limits::RADIANCE)?;
         }
         if let Some(camera) = &file.camera {
             scene.view = Some(self.view(camera)?);
-            scene.lens = self.lens(camera.get_ref())?;
         }
         self.image(&file.image, &mut scene)?;
         for light in &file.lights {
@@ -220,23 +222,21 @@ impl Reader<'_> {
         scene.transparent = table.transparent.unwrap_or(false);
         if let Some(samples) = &table.samples {
             scene.sampling.samples =
-                Some(self.whole("samples", samples, 1, i64::from(MAX_SAMPLES))?);
+                Some(self.whole("samples", samples, 1, limits::MAX_SAMPLES)?);
         }
         if let Some(bounces) = &table.max_bounces {
-            scene.sampling.max_bounces = self.whole("max_bounces", bounces, 0, 10_000)?;
+            scene.sampling.max_bounces =
+                self.whole("max_bounces", bounces, 0, limits::MAX_BOUNCES)?;
         }
         if let Some(seed) = &table.seed {
-            scene.sampling.seed = self.whole("seed", seed, 0, i64::from(u32::MAX))?;
+            scene.sampling.seed = self.whole("seed", seed, 0, u32::MAX)?;
         }
         if let Some(distance) = &table.ambient_occlusion {
-            scene.sampling.ambient_occlusion = Some(self.number(
-                "ambient_occlusion",
-                distance,
-                f32::MIN_POSITIVE..=MAX_LENGTH,
-            )?);
+            scene.sampling.ambient_occlusion =
+                Some(self.number("ambient_occlusion", distance, limits::AMBIENT_OCCLUSION)?);
         }
         if let Some(exposure) = &table.exposure {
-            scene.develop.exposure = self.number("exposure", exposure, -64.0..=64.0)?;
+            scene.develop.exposure = self.number("exposure", exposure, limits::EXPOSURE)?;
         }
         scene.develop.tonemap = match table.tonemap {
             None | Some(TonemapName::Clamp) => Tonemap::Clamp,
@@ -249,17 +249,18 @@ impl Reader<'_> {
     fn lens(&self, camera: &CameraTable) -> Result<Lens> {
         let mut lens = Lens::default();
         if let Some(aperture) = &camera.aperture {
-            lens.aperture = self.number("aperture", aperture, 0.0..=MAX_LENGTH)?;
+            lens.aperture = self.number("aperture", aperture, limits::APERTURE)?;
         }
         if let Some(distance) = &camera.focus_distance {
-            let distance =
-                self.number("focus_distance", distance, f32::MIN_POSITIVE..=MAX_LENGTH)?;
+            let distance = self.number("focus_distance", distance, limits::FOCUS_DISTANCE)?;
             lens.focus_distance = Some(distance);
         }
         if let Some(shutter) = &camera.shutter {
             let times: Vec<f32> = shutter.get_ref().iter().map(|time| *time as f32).collect();
             match times[..] {
-                [open, close] if open.is_finite() && close.is_finite() && open <= close => {
+                [open, close]
+                    if limits::TIME.holds(open) && limits::TIME.holds(close) && open <= close =>
+                {
                     lens.shutter = (open, close);
                 }
                 _ => {
@@ -279,27 +280,32 @@ impl Reader<'_> {
 
     fn light(&self, table: &LightTable, scene: &mut Scene) -> Result<()> {
         let position = self.vector("position", &table.position)?;
-        let intensity = self.color("intensity", &table.intensity)?;
+        let intensity = self.color("intensity", &table.intensity, limits::INTENSITY)?;
         let radius = match &table.radius {
-            Some(radius) => self.number("radius", radius, 0.0..=MAX_LENGTH)?,
+            Some(radius) => self.number("radius", radius, limits::LIGHT_RADIUS)?,
             None => 0.0,
         };
         if radius > 0.0 {
             // A sphere of radiance L and radius r has the intensity L π r² from afar.
             let radiance = intensity / (std::f32::consts::PI * radius * radius);
-            if !radiance.is_finite() {
+            if !limits::RADIANCE.holds_all(radiance) {
                 return Err(self
                     .wrong(
                         &table.intensity,
                         "the light is too bright for its radius",
-                        "its radiance overflows",
-                        "make the radius larger, or leave it out for a point of light",
+                        "intensity over π radius² is its radiance",
+                        format!(
+                            "radiance is at most {:e}: make the radius larger, or leave it out for a point of light",
+                            limits::MAX_RADIANCE
+                        ),
                     )
                     .into());
             }
             let world = &mut scene.world;
             let id = world.add_named_material("[[light]]", Material::emissive(radiance));
-            world.add(Sphere::new(position, radius), id);
+            let sphere = Sphere::new(position, radius);
+            self.is_within(&table.position, &sphere, Vec3::ZERO, (0.0, 0.0))?;
+            world.add(sphere, id);
         } else {
             scene.lights.push(PointLight {
                 position,
@@ -312,13 +318,13 @@ impl Reader<'_> {
     fn sky(&self, table: &Spanned<SkyTable>) -> Result<Surroundings> {
         let sky = table.get_ref();
         let strength = match &sky.strength {
-            Some(strength) => self.number("strength", strength, 0.0..=1e12)?,
+            Some(strength) => self.number("strength", strength, limits::STRENGTH)?,
             None => 1.0,
         };
         let optional = |name, value: &Option<Spanned<Vec<f64>>>| {
             value
                 .as_ref()
-                .map(|value| self.color(name, value))
+                .map(|value| self.radiance(name, value, strength))
                 .transpose()
         };
         let horizon = optional("horizon", &sky.horizon)?;
@@ -337,17 +343,33 @@ impl Reader<'_> {
                         )
                         .into());
                 };
-                Some(Sun {
+                let sun = Sun {
                     direction: unit.as_vec3(),
                     size: match &sky.sun_size {
-                        Some(size) => self.number("sun_size", size, 0.0..=180.0)?,
+                        Some(size) => self.number("sun_size", size, limits::SUN_SIZE)?,
                         None => DEFAULT_SUN_SIZE,
                     },
                     irradiance: match irradiance {
-                        Some(irradiance) => self.color("sun_irradiance", irradiance)?,
+                        Some(irradiance) => {
+                            self.color("sun_irradiance", irradiance, limits::IRRADIANCE)?
+                        }
                         None => Vec3::splat(std::f32::consts::PI),
                     },
-                })
+                };
+                if !limits::RADIANCE.holds_all(sun.radiance().unwrap_or_default()) {
+                    return Err(self
+                        .wrong(
+                            direction,
+                            "the sun is too bright for its size",
+                            "sun_irradiance over the solid angle of its disc is its radiance",
+                            format!(
+                                "radiance is at most {:e}: make sun_size larger, or 0 for a sun without a disc",
+                                limits::MAX_RADIANCE
+                            ),
+                        )
+                        .into());
+                }
+                Some(sun)
             }
             (None, Some(irradiance)) => {
                 return Err(self
@@ -380,8 +402,8 @@ impl Reader<'_> {
         // One of the two is a sky of one colour; none of them is dark.
         let one = horizon.or(zenith).unwrap_or(Vec3::ZERO);
         Ok(Surroundings {
-            horizon: horizon.unwrap_or(one) * strength,
-            zenith: zenith.unwrap_or(one) * strength,
+            horizon: horizon.unwrap_or(one),
+            zenith: zenith.unwrap_or(one),
             sun,
             image,
         })
@@ -389,7 +411,7 @@ impl Reader<'_> {
 
     fn fog(&self, fog: &FogTable) -> Result<FogBall> {
         let albedo = match &fog.albedo {
-            Some(albedo) => self.reflectance(albedo)?,
+            Some(albedo) => self.color("albedo", albedo, limits::REFLECTANCE)?,
             None => Vec3::ONE,
         };
         if let (Some(center), None) = (&fog.center, &fog.radius) {
@@ -412,10 +434,10 @@ impl Reader<'_> {
                     Some(center) => self.vector("center", center)?,
                     None => Vec3::ZERO,
                 },
-                radius: number("radius", &fog.radius, f32::MIN_POSITIVE..=MAX_LENGTH, 0.0)?,
+                radius: number("radius", &fog.radius, limits::RADIUS, 0.0)?,
                 albedo,
-                extinction: self.number("extinction", &fog.extinction, 1e-30..=1e12)?,
-                anisotropy: number("anisotropy", &fog.anisotropy, -0.99..=0.99, 0.0)?,
+                extinction: self.number("extinction", &fog.extinction, limits::EXTINCTION)?,
+                anisotropy: number("anisotropy", &fog.anisotropy, limits::ANISOTROPY, 0.0)?,
                 ..Fog::default()
             },
         })
@@ -482,48 +504,56 @@ impl Reader<'_> {
             ))),
         };
         Ok(match kind {
-            MaterialKind::Diffuse => (Material::diffuse(self.reflectance(color()?)?), None),
+            MaterialKind::Diffuse => (
+                Material::diffuse(self.color("color", color()?, limits::REFLECTANCE)?),
+                None,
+            ),
             MaterialKind::Metal => {
                 let roughness = match &material.roughness {
-                    Some(roughness) => self.number("roughness", roughness, 0.0..=1.0)?,
+                    Some(roughness) => self.number("roughness", roughness, limits::ROUGHNESS)?,
                     None => 0.0,
                 };
                 (
-                    Material::metal(self.reflectance(color()?)?, roughness),
+                    Material::metal(
+                        self.color("color", color()?, limits::REFLECTANCE)?,
+                        roughness,
+                    ),
                     None,
                 )
             }
             MaterialKind::Glass => {
                 let index = match &material.index {
-                    Some(index) => self.number("index", index, 0.1..=10.0)?,
+                    Some(index) => self.number("index", index, limits::INDEX)?,
                     None => 1.5,
                 };
                 let absorption = match &material.absorption {
-                    Some(absorption) => self.color("absorption", absorption)?,
+                    Some(absorption) => self.color("absorption", absorption, limits::ABSORPTION)?,
                     None => Vec3::ZERO,
                 };
                 let thickness = material
                     .thickness
                     .as_ref()
-                    .map(|t| self.number("thickness", t, f32::MIN_POSITIVE..=MAX_LENGTH))
+                    .map(|t| self.number("thickness", t, limits::THICKNESS))
                     .transpose()?;
                 (Material::glass(index, absorption), thickness)
             }
             MaterialKind::Emissive => {
                 let strength = match &material.strength {
-                    Some(strength) => self.number("strength", strength, 0.0..=1e12)?,
+                    Some(strength) => self.number("strength", strength, limits::STRENGTH)?,
                     None => 1.0,
                 };
-                let radiance = self.color("color", color()?)? * strength;
-                (Material::emissive(radiance), None)
+                (
+                    Material::emissive(self.radiance("color", color()?, strength)?),
+                    None,
+                )
             }
         })
     }
 
-    fn whole(&self, name: &str, value: &Spanned<i64>, low: i64, high: i64) -> Result<u32> {
+    fn whole(&self, name: &str, value: &Spanned<i64>, low: u32, high: u32) -> Result<u32> {
         u32::try_from(*value.get_ref())
             .ok()
-            .filter(|whole| (low..=high).contains(&i64::from(*whole)))
+            .filter(|whole| (low..=high).contains(whole))
             .ok_or_else(|| {
                 self.wrong(
                     value,
@@ -535,33 +565,22 @@ impl Reader<'_> {
             })
     }
 
-    fn number(
-        &self,
-        name: &str,
-        value: &Spanned<f64>,
-        range: std::ops::RangeInclusive<f32>,
-    ) -> Result<f32> {
+    fn number(&self, name: &str, value: &Spanned<f64>, range: Range) -> Result<f32> {
         let number = *value.get_ref() as f32;
-        if range.contains(&number) {
+        if range.holds(number) {
             return Ok(number);
         }
-        let (low, high) = (range.start(), range.end());
-        let bounds = if *low == f32::MIN_POSITIVE {
-            format!("above zero, up to {high:e}")
-        } else {
-            format!("from {low} to {high:e}")
-        };
         Err(self
             .wrong(
                 value,
                 format!("{name} = {} is not possible", value.get_ref()),
                 "out of range",
-                format!("give a number {bounds}"),
+                format!("give a number {range}"),
             )
             .into())
     }
 
-    fn world(&self, file: &File) -> Result<World> {
+    fn world(&self, file: &File, shutter: (f32, f32)) -> Result<World> {
         let mut world = World::default();
         let mut ids = BTreeMap::new();
         for (name, material) in &file.materials {
@@ -600,12 +619,13 @@ impl Reader<'_> {
             };
             let sphere = Sphere::new(
                 self.vector("center", &table.center)?,
-                self.radius(&table.radius)?,
+                self.number("radius", &table.radius, limits::RADIUS)?,
             );
             let velocity = match &table.velocity {
                 Some(velocity) => self.vector("velocity", velocity)?,
                 None => Vec3::ZERO,
             };
+            self.is_within(&table.center, &sphere, velocity, shutter)?;
             let mut add = |sphere, id| {
                 if velocity == Vec3::ZERO {
                     world.add(sphere, id);
@@ -615,19 +635,23 @@ impl Reader<'_> {
             };
             add(sphere, id);
             if let Some((thickness, inner)) = hollow {
-                let radius = sphere.radius() - thickness;
-                if radius <= 0.0 {
-                    return Err(self
-                        .wrong(
-                            &table.radius,
-                            format!(
-                                "the shell of this sphere, {thickness} thick, leaves no hollow"
-                            ),
+                let Some(radius) = limits::hollow(sphere.radius(), thickness) else {
+                    let (message, label, help) = if sphere.radius() <= thickness {
+                        (
+                            "leaves no hollow",
                             "not more than the thickness",
                             "give a larger radius, or a material without thickness for solid glass",
                         )
-                        .into());
-                }
+                    } else {
+                        (
+                            "is too thin for a 32-bit float",
+                            "the hollow's radius rounds to this",
+                            "give a thickness of at least a millionth of the radius",
+                        )
+                    };
+                    let message = format!("the shell of this sphere, {thickness} thick, {message}");
+                    return Err(self.wrong(&table.radius, message, label, help).into());
+                };
                 add(Sphere::new(sphere.center(), radius), inner);
             }
         }
@@ -681,7 +705,7 @@ impl Reader<'_> {
                 None => Vec3::Y,
             },
             vertical_fov: match &table.vertical_fov {
-                Some(fov) if *fov.get_ref() > 0.0 && *fov.get_ref() < 180.0 => *fov.get_ref(),
+                Some(fov) if limits::is_vertical_fov(*fov.get_ref()) => *fov.get_ref(),
                 Some(fov) => {
                     return Err(self
                         .wrong(
@@ -721,36 +745,56 @@ impl Reader<'_> {
     }
 
     fn side(&self, name: &str, value: &Spanned<i64>) -> Result<u32> {
-        u32::try_from(*value.get_ref())
-            .ok()
-            .filter(|side| (1..=MAX_IMAGE_SIDE).contains(side))
-            .ok_or_else(|| {
-                self.wrong(
-                    value,
-                    format!("a {name} of {} pixels is not possible", value.get_ref()),
-                    "out of range",
-                    format!("give a whole number from 1 to {MAX_IMAGE_SIDE}"),
-                )
-                .into()
-            })
+        self.whole(name, value, 1, limits::MAX_IMAGE_SIDE)
     }
 
-    fn radius(&self, value: &Spanned<f64>) -> Result<f32> {
-        let radius = *value.get_ref() as f32;
-        if radius > 0.0 && radius <= MAX_LENGTH {
-            return Ok(radius);
+    /// A vector in space.
+    fn vector(&self, name: &str, value: &Spanned<Vec<f64>>) -> Result<Vec3> {
+        let vector = self.three(name, value)?;
+        if !limits::COORDINATE.holds_all(vector) {
+            return Err(self
+                .wrong(
+                    value,
+                    format!("{name} is too large"),
+                    "out of range",
+                    format!(
+                        "give numbers {}: use a larger unit of length",
+                        limits::COORDINATE
+                    ),
+                )
+                .into());
         }
+        Ok(vector)
+    }
+
+    /// Refuses a sphere that reaches, or moves, too far.
+    fn is_within(
+        &self,
+        center: &Spanned<Vec<f64>>,
+        sphere: &Sphere,
+        velocity: Vec3,
+        shutter: (f32, f32),
+    ) -> Result<()> {
+        if limits::is_within(sphere, velocity, shutter) {
+            return Ok(());
+        }
+        let how = if velocity == Vec3::ZERO {
+            "reaches"
+        } else {
+            "reaches, or moves while the shutter is open,"
+        };
         Err(self
             .wrong(
-                value,
-                format!("a radius of {} is not possible", value.get_ref()),
-                "must be above zero",
-                format!("give a radius above zero and below {MAX_LENGTH:e}"),
+                center,
+                format!("this sphere {how} beyond {:e}", limits::MAX_LENGTH),
+                "with its radius, too far from the origin",
+                "use a larger unit of length",
             )
             .into())
     }
 
-    fn vector(&self, name: &str, value: &Spanned<Vec<f64>>) -> Result<Vec3> {
+    /// Three finite numbers.
+    fn three(&self, name: &str, value: &Spanned<Vec<f64>>) -> Result<Vec3> {
         let Ok([x, y, z]) = <[f64; 3]>::try_from(value.get_ref().as_slice()) else {
             return Err(self
                 .wrong(
@@ -772,45 +816,51 @@ impl Reader<'_> {
                 )
                 .into());
         }
-        if vector.abs().max_element() > MAX_LENGTH {
-            return Err(self
-                .wrong(
-                    value,
-                    format!("{name} is too large"),
-                    "its square overflows",
-                    format!("stay below {MAX_LENGTH:e}: use a larger unit of length"),
-                )
-                .into());
-        }
         Ok(vector)
     }
 
-    fn color(&self, name: &str, value: &Spanned<Vec<f64>>) -> Result<Vec3> {
-        let color = self.vector(name, value)?;
-        if color.min_element() >= 0.0 {
+    /// Red, green and blue, each in the range.
+    fn color(&self, name: &str, value: &Spanned<Vec<f64>>, range: Range) -> Result<Vec3> {
+        let color = self.three(name, value)?;
+        if range.holds_all(color) {
             return Ok(color);
         }
-        Err(self
-            .wrong(
-                value,
-                format!("{name} has a channel below zero"),
-                "negative",
-                "give linear red, green and blue, each zero or above",
+        let (message, label) = if color.min_element() < range.low {
+            (format!("{name} has a channel below zero"), "negative")
+        } else if range == limits::REFLECTANCE {
+            (
+                format!("{name} has a channel above one"),
+                "gives back more light than it receives",
             )
-            .into())
+        } else {
+            (
+                format!("{name} has a channel above {:e}", range.high),
+                "too large",
+            )
+        };
+        let help = if range == limits::REFLECTANCE {
+            "give linear red, green and blue between 0 and 1 (divide 8-bit values by 255 and undo the sRGB curve)".into()
+        } else {
+            format!("give linear red, green and blue, each {range}")
+        };
+        Err(self.wrong(value, message, label, help).into())
     }
 
-    fn reflectance(&self, value: &Spanned<Vec<f64>>) -> Result<Vec3> {
-        let color = self.color("color", value)?;
-        if color.max_element() <= 1.0 {
-            return Ok(color);
+    /// A radiance times a strength.
+    fn radiance(&self, name: &str, value: &Spanned<Vec<f64>>, strength: f32) -> Result<Vec3> {
+        let radiance = self.color(name, value, limits::RADIANCE)? * strength;
+        if limits::RADIANCE.holds_all(radiance) {
+            return Ok(radiance);
         }
         Err(self
             .wrong(
                 value,
-                "color has a channel above one",
-                "reflects more light than it receives",
-                "give linear red, green and blue between 0 and 1 (divide 8-bit values by 255 and undo the sRGB curve)",
+                format!("{name} times a strength of {strength:e} is too bright"),
+                "too large",
+                format!(
+                    "give a smaller strength: the product is at most {:e}",
+                    limits::MAX_RADIANCE
+                ),
             )
             .into())
     }
@@ -886,7 +936,7 @@ radius = 100
     #[test]
     fn each_mistake_is_refused_at_its_line() {
         let cases = [
-            ("width = 4", "width = 0", 3, "width of 0"),
+            ("width = 4", "width = 0", 3, "width = 0"),
             ("width = 4", "width = 4.5", 3, "invalid type"),
             ("width = 4", "wdith = 4", 3, "unknown field"),
             ("width = 4", "width = 99999", 3, "99999"),
@@ -925,11 +975,14 @@ radius = 100
             ("vertical_fov = 90", "vertical_fov = nan", 10, "NaN degrees"),
             ("\"diffuse\"", "\"mirror\"", 13, "unknown variant"),
             ("color = [1, 0, 0]", "color = [1.5, 0, 0]", 14, "above one"),
-            ("radius = 0.5", "radius = 0", 18, "radius of 0"),
-            ("radius = 0.5", "radius = -1", 18, "radius of -1"),
-            ("radius = 0.5", "radius = nan", 18, "radius of NaN"),
-            ("radius = 0.5", "radius = 1e-60", 18, "radius of 0.000"),
+            ("radius = 0.5", "radius = 0", 18, "radius = 0"),
+            ("radius = 0.5", "radius = -1", 18, "radius = -1"),
+            ("radius = 0.5", "radius = nan", 18, "radius = NaN"),
+            ("radius = 0.5", "radius = 1e-60", 18, "radius = 0.000"),
             ("radius = 0.5", "radius = \"0.5\"", 18, "invalid type"),
+            ("radius = 0.5", "radius = 1e-40", 18, "radius = 0.000"),
+            ("radius = 100", "radius = 1e18", 22, "beyond 1e18"),
+            ("[0, 0.5, 1]", "[0, 1e16, 1]", 5, "above 1e15"),
             (
                 "material = \"red\"",
                 "material = \"blue\"",
@@ -1021,6 +1074,18 @@ radius = 100
                 "leaves no hollow",
             ),
             (
+                "[materials.m]\nkind = \"glass\"\nthickness = 1e-9\n[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\nmaterial = \"m\"",
+                "too thin",
+            ),
+            (
+                "[materials.m]\nkind = \"emissive\"\ncolor = [1e9, 0, 0]\nstrength = 1e9",
+                "too bright",
+            ),
+            (
+                "[camera]\neye = [0, 0, 9]\ntarget = [0, 0, 0]\nshutter = [0, 1e9]\n[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\nvelocity = [0, 1e10, 0]",
+                "moves",
+            ),
+            (
                 "[materials.m]\nkind = \"metal\"\ncolor = [1, 1, 1]\nroughness = 1.5",
                 "roughness = 1.5",
             ),
@@ -1059,11 +1124,22 @@ radius = 100
                 "[sky]\nsun_direction = [0, 1, 0]\nsun_size = 181",
                 "sun_size = 181",
             ),
+            (
+                "[sky]\nsun_direction = [0, 1, 0]\nsun_size = 1e-9",
+                "too bright for its size",
+            ),
+            (
+                "[sky]\nzenith = [1e10, 0, 0]\nstrength = 1e10",
+                "zenith times a strength",
+            ),
             ("[sky]\nimage = \"no.hdr\"", "cannot be opened"),
             ("[sky]\nstrength = -1", "strength = -1"),
             ("[fog]\nalbedo = [1, 1, 1]", "missing field `extinction`"),
             ("[fog]\nextinction = 0", "extinction = 0"),
-            ("[fog]\nextinction = 1\nalbedo = [2, 0, 0]", "above one"),
+            (
+                "[fog]\nextinction = 1\nalbedo = [2, 0, 0]",
+                "albedo has a channel above one",
+            ),
             ("[fog]\nextinction = 1\nanisotropy = 1", "anisotropy = 1"),
             ("[fog]\nextinction = 1\nradius = 0", "radius = 0"),
             ("[fog]\nextinction = 1\ncenter = [0, 0, 0]", "no radius"),

@@ -150,15 +150,9 @@ fn lights(scene: &Scene, world: &World) -> (Vec<Light>, Sky, f32) {
     if let Some(surroundings) = &scene.sky {
         (sky.horizon, sky.zenith) = (surroundings.horizon, surroundings.zenith);
         if let Some(sun) = surroundings.sun {
-            let half = 0.5 * f64::from(sun.size).to_radians();
-            let height = (2.0 * (0.5 * half).sin().powi(2)) as f32;
-            let mut color = sun.irradiance;
-            if height > 0.0 {
-                // E = L π sin² of the half angle, while the disc is above the horizon.
-                let squared_sine = half.min(0.5 * f64::from(PI)).sin().powi(2) as f32;
-                color /= PI * squared_sine;
-                sky.sun_radiance = color;
-            }
+            let (height, radiance) = (sun.height(), sun.radiance());
+            let color = radiance.unwrap_or(sun.irradiance);
+            sky.sun_radiance = radiance.unwrap_or_default();
             (sky.sun_direction, sky.sun_height) = (sun.direction, height);
             if luminance(color) > 0.0 {
                 far.push(Light::sun(sun.direction, height, color));

@@ -11,7 +11,7 @@ use rayon::prelude::*;
 
 use super::elements::{self, Element};
 use super::{Atom, WrongLine};
-use crate::scene::MAX_LENGTH;
+use crate::scene::limits::MAX_LENGTH;
 
 /// Reads the atoms of the first frame of an XYZ file.
 ///
