@@ -11,13 +11,12 @@ use spherule::bench::verify::verify;
 use spherule::device::{Device, GpuOptions};
 use spherule::kernel::nearest::nearest_hit_in;
 use spherule::kernel::tree::{Node, nearest_hit_in_tree};
-use spherule::kernel::{Hit, Material, Pixel, Ray, Rung, Shading, Sphere};
+use spherule::kernel::{Material, Pixel, Ray, Rung, Shading, Sphere};
 use spherule::render::pace::Pace;
 use spherule::render::{QUIET, Settings, cpu, whole_image};
 use spherule::scene::World;
 use spherule::scene::tree::Acceleration;
 use spherule::trace::CpuTracer;
-use spherule::trace::single::Single;
 
 mod common;
 use common::{all_adapters, gpus, open, skips};
@@ -82,10 +81,9 @@ fn hard_cases_are_hit_in_a_tree_of_a_million() {
         for rung in Rung::ALL {
             tree.nearest(rung, &rays, &mut found);
             tree.occluded(rung, &rays, &mut occluded);
-            let mut truth = vec![Hit::NONE; rays.len()];
+            let mut truth = Vec::new();
             // Of equally near ones the first in the order of the leaves.
-            let all = Single::new(rung, &[], None);
-            all.trace::<false, _>(&rays, &sorted[..], |index, hit| truth[index] = hit);
+            CpuTracer::new(&sorted, Acceleration::BruteForce).nearest(rung, &rays, &mut truth);
             for (index, ray) in rays.iter().enumerate() {
                 let truth = truth[index];
                 let mut given = truth;
@@ -94,7 +92,7 @@ fn hard_cases_are_hit_in_a_tree_of_a_million() {
                 }
                 assert_eq!(found[index], given, "{} {ray:?}", rung.name());
                 assert_eq!(occluded[index] == 1, truth.is_some(), "{}", rung.name());
-                let walked = nearest_hit_in_tree(rung.to_u32(), ray, tree.nodes(), &sorted[..]);
+                let walked = nearest_hit_in_tree(rung.to_u32(), ray, tree.tree(), &sorted[..]);
                 assert_eq!(walked, truth, "{} {ray:?}", rung.name());
                 let own = &spheres[first + index];
                 let exact = Intersection::of(ray, own).and_then(|exact| exact.nearest(ray));

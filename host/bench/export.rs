@@ -58,7 +58,7 @@ pub fn export(
     });
     put(&folder.join("meta.json"), meta.to_string().as_bytes())?;
     put_all(&folder.join("spheres.f32"), &scene.world.spheres)?;
-    put_all(&folder.join("nodes.u32"), tracer.nodes())?;
+    put_all(&folder.join("nodes.u32"), tracer.tree().nodes())?;
     put_all(&folder.join("order.u32"), tracer.order())?;
     let (mut hits, mut occluded) = (Vec::new(), Vec::new());
     for kind in Kind::ALL {

@@ -6,7 +6,6 @@ use std::borrow::Cow;
 
 use glam::UVec2;
 use rayon::prelude::*;
-use spherule_kernel::tree::Node;
 use spherule_kernel::{Launch, Pixel, Rung, Shading};
 
 use super::packet::{self, Frusta, Packet, SIDE};
@@ -14,7 +13,7 @@ use super::{Progress, Settings};
 use crate::error::Result;
 use crate::film;
 use crate::scene::World;
-use crate::scene::tree::{self, Acceleration};
+use crate::scene::tree::{self, Acceleration, Nodes};
 
 /// From how many spheres on a tree pays for squares of camera rays: 8 with AVX-512.
 const MIN_SPHERES: usize = 12;
@@ -23,7 +22,7 @@ const MIN_SPHERES: usize = 12;
 #[derive(Clone, Debug)]
 pub struct Prepared<'a> {
     world: Cow<'a, World>,
-    nodes: Vec<Node>,
+    nodes: Nodes,
 }
 
 impl<'a> Prepared<'a> {
@@ -37,7 +36,7 @@ impl<'a> Prepared<'a> {
             },
             None => Self {
                 world: Cow::Borrowed(world),
-                nodes: Vec::new(),
+                nodes: Nodes::default(),
             },
         }
     }
@@ -122,7 +121,14 @@ fn bands<const SHADING: u32, const RUNG: u32>(
             let mut packet = Packet::new();
             for left in (0..width).step_by(SIDE) {
                 let corner = UVec2::new(left as u32, (band * SIDE) as u32);
-                packet::trace::<RUNG>(&mut packet, launch, &frusta, corner, nodes, &world.spheres);
+                packet::trace::<RUNG>(
+                    &mut packet,
+                    launch,
+                    &frusta,
+                    corner,
+                    nodes.tree(),
+                    &world.spheres,
+                );
                 for (y, row) in pixels.chunks_mut(width).enumerate() {
                     for (x, pixel) in row[left..].iter_mut().take(SIDE).enumerate() {
                         let (ray, hit) = packet.hit(SIDE * y + x);

@@ -16,7 +16,7 @@ use multiversion::multiversion;
 use spherule_kernel::bounds;
 use spherule_kernel::candidates;
 use spherule_kernel::precision::intersect;
-use spherule_kernel::tree::{Extent, Node};
+use spherule_kernel::tree::{Extent, Node, Tree};
 use spherule_kernel::{Camera, Hit, Launch, Ray, Rung, Sphere};
 
 /// Rays side by side.
@@ -669,7 +669,7 @@ pub fn trace<const RUNG: u32>(
     launch: &Launch,
     frusta: &Frusta,
     corner: UVec2,
-    nodes: &[Node],
+    tree: Tree<'_>,
     spheres: &[Sphere],
 ) {
     const TEXTBOOK: u32 = Rung::Textbook.to_u32();
@@ -683,7 +683,7 @@ pub fn trace<const RUNG: u32>(
         DOUBLE => trace_double,
         _ => trace_certified,
     };
-    trace(packet, launch, frusta, corner, nodes, spheres);
+    trace(packet, launch, frusta, corner, tree, spheres);
 }
 
 macro_rules! on_rung {
@@ -698,11 +698,11 @@ macro_rules! on_rung {
             launch: &Launch,
             frusta: &Frusta,
             corner: UVec2,
-            nodes: &[Node],
+            tree: Tree<'_>,
             spheres: &[Sphere],
         ) {
             packet.aim(launch, frusta, corner);
-            trace_on::<{ Rung::$rung.to_u32() }>(packet, nodes, spheres);
+            trace_on::<{ Rung::$rung.to_u32() }>(packet, tree, spheres);
         }
     };
 }
@@ -714,8 +714,9 @@ on_rung!(trace_double, Double);
 on_rung!(trace_certified, Certified);
 
 #[inline(always)]
-fn trace_on<const RUNG: u32>(packet: &mut Packet, nodes: &[Node], spheres: &[Sphere]) {
-    if nodes.is_empty() {
+fn trace_on<const RUNG: u32>(packet: &mut Packet, tree: Tree<'_>, spheres: &[Sphere]) {
+    let nodes = tree.nodes();
+    if tree.is_none() {
         // Of hits of a rung without a bound nothing is known; none is passed by for being far away.
         packet.widening = f32::MAX;
         packet.test::<RUNG>(spheres, 0, spheres.len());
@@ -856,17 +857,22 @@ mod tests {
         let mut hits = 0;
         let mut packet = Packet::new();
         let frusta = Frusta::of(launch);
-        for (nodes, spheres) in [(&tree.nodes[..], &sorted[..]), (&[], spheres)] {
+        for (tree, spheres) in [(tree.nodes.tree(), &sorted[..]), (Tree::NONE, spheres)] {
             for (left, top) in (0..SIZE.y)
                 .step_by(SIDE)
                 .flat_map(|top| (0..SIZE.x).step_by(SIDE).map(move |left| (left, top)))
             {
                 let corner = UVec2::new(left, top);
-                trace::<RUNG>(&mut packet, launch, &frusta, corner, nodes, spheres);
+                trace::<RUNG>(&mut packet, launch, &frusta, corner, tree, spheres);
                 for index in 0..RAYS {
                     let (ray, hit) = packet.hit(index);
                     let alone = nearest_hit_in(RUNG, &ray, spheres, 0, u32::MAX);
-                    assert_eq!(hit, alone, "rung {RUNG}, {} nodes, {ray:?}", nodes.len());
+                    assert_eq!(
+                        hit,
+                        alone,
+                        "rung {RUNG}, {} nodes, {ray:?}",
+                        tree.nodes().len()
+                    );
                     hits += usize::from(hit.is_some());
                 }
             }

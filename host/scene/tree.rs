@@ -9,11 +9,13 @@
 //! heuristic, over every place where they could be split.
 
 use std::array;
+use std::ops::Deref;
 
+use bytemuck::Zeroable;
 use glam::{DVec3, UVec4, Vec3, Vec4};
 use rayon::prelude::*;
 use spherule_kernel::Sphere;
-use spherule_kernel::tree::{Extent, Node};
+use spherule_kernel::tree::{self as kernel, Extent, Node};
 
 use super::world::{GRAIN, World};
 
@@ -55,24 +57,47 @@ impl Acceleration {
     }
 }
 
+/// The nodes of a tree that was grown here, the first of them an [`Extent`]; or none.
+#[derive(Clone, Debug, Default)]
+pub struct Nodes(Vec<Node>);
+
+impl Nodes {
+    /// As walks take them.
+    #[inline]
+    #[must_use]
+    pub fn tree(&self) -> kernel::Tree<'_> {
+        // SAFETY: there are none, or `grow` made them.
+        unsafe { kernel::Tree::of_unchecked(&self.0) }
+    }
+}
+
+impl Deref for Nodes {
+    type Target = [Node];
+
+    fn deref(&self) -> &[Node] {
+        &self.0
+    }
+}
+
 /// A tree over spheres.
 #[derive(Clone, Debug)]
 pub struct Tree {
-    /// The nodes, the first of them an [`Extent`].
-    pub nodes: Vec<Node>,
+    /// The nodes.
+    pub nodes: Nodes,
     /// The spheres in the order of the leaves, by their indices. The nodes name them by their places
     /// in here.
     pub order: Vec<u32>,
 }
 
 impl Tree {
-    /// What belongs to each sphere, in the order of the leaves.
+    /// What belongs to each sphere, in the order of the leaves; zeros for spheres beyond the end of `values`.
     #[must_use]
-    pub fn sort<T: Copy + Send + Sync>(&self, values: &[T]) -> Vec<T> {
+    pub fn sort<T: Zeroable + Copy + Send + Sync>(&self, values: &[T]) -> Vec<T> {
+        let of = |index: &u32| values.get(*index as usize).copied();
         self.order
             .par_iter()
             .with_min_len(GRAIN)
-            .map(|index| values[*index as usize])
+            .map(|index| of(index).unwrap_or(T::zeroed()))
             .collect()
     }
 
@@ -279,6 +304,8 @@ pub fn grow(
         (above as u32, below),
         (0, &mut order),
     );
+    debug_assert!(kernel::Tree::of(&nodes).is_some());
+    let nodes = Nodes(nodes);
     Some(Tree { nodes, order })
 }
 
@@ -494,7 +521,7 @@ fn share_out<'a>(items: &'a mut [Item], places: usize, weights: Vec3, parts: &mu
         bounds = bounds.with(items[at].bounds());
         right[at] = bounds.area() * (count - at) as f32;
     }
-    let mut best = (f32::MAX, count / 2, places / 2);
+    let mut best = (f32::INFINITY, 0, 0);
     let mut bounds = Bounds::EMPTY;
     for at in 1..count {
         bounds = bounds.with(items[at - 1].bounds());
@@ -503,7 +530,7 @@ fn share_out<'a>(items: &'a mut [Item], places: usize, weights: Vec3, parts: &mu
         let rest = count - at;
         let least = at.div_ceil(Node::MAX_LEAF);
         let most = (places.saturating_sub(rest.div_ceil(Node::MAX_LEAF))).min(at);
-        if least <= most && cost < best.0 {
+        if least <= most && (cost < best.0 || best.1 == 0) {
             let even = (places * at + count / 2) / count;
             best = (cost, at, even.clamp(least, most));
         }
@@ -876,7 +903,7 @@ mod tests {
 
     struct Grown {
         world: World,
-        nodes: Vec<Node>,
+        nodes: Nodes,
         order: Vec<u32>,
     }
 
@@ -935,7 +962,7 @@ mod tests {
                 world.add(sphere, 0);
             }
             let grown = Grown::over(&world);
-            let levels = Levels::of(&grown.nodes);
+            let levels = Levels::of(grown.nodes.tree());
             let mut random = Random::new(5);
             let mut rays: Vec<Ray> = (0..2000)
                 .map(|i| {
@@ -968,10 +995,10 @@ mod tests {
                     vec![Hit::NONE; rays.len()],
                 ];
                 let [nearest, any, all] = &mut by_several;
-                let in_tree = Single::new(rung, &grown.nodes, levels.as_ref());
+                let in_tree = Single::new(rung, grown.nodes.tree(), levels.as_ref());
                 in_tree.trace::<false, _>(&rays, spheres, |index, hit| nearest[index] = hit);
                 in_tree.trace::<true, _>(&rays, spheres, |index, hit| any[index] = hit);
-                let in_none = Single::new(rung, &[], None);
+                let in_none = Single::new(rung, kernel::Tree::NONE, None);
                 in_none.trace::<false, _>(&rays, spheres, |index, hit| all[index] = hit);
                 let rung = rung.to_u32();
                 for (index, ray) in rays.iter().enumerate() {
@@ -983,10 +1010,10 @@ mod tests {
                         "{name} {ray:?}"
                     );
                     assert_eq!(by_several[2][index], brute, "{name} {ray:?}");
-                    let found = nearest_hit_in_tree(rung, ray, &grown.nodes, spheres);
+                    let found = nearest_hit_in_tree(rung, ray, grown.nodes.tree(), spheres);
                     assert_eq!(found, brute, "{name} {ray:?}");
                     hits += usize::from(found.is_some());
-                    let shadow = is_occluded_in_tree(rung, ray, &grown.nodes, spheres);
+                    let shadow = is_occluded_in_tree(rung, ray, grown.nodes.tree(), spheres);
                     assert_eq!(shadow, brute.is_some(), "{name} {rung} {ray:?}");
                 }
             }
@@ -1089,7 +1116,7 @@ mod tests {
                 let eye = Vec3::new(0.0, 0.0, -3.5);
                 let ray = Ray::new(eye, random.vec3(-1.0, 1.0) - eye);
                 let rung = Rung::Robust.to_u32();
-                let work = work_in_tree(rung, false, &ray, &tree.nodes, &sorted[..]);
+                let work = work_in_tree(rung, false, &ray, tree.nodes.tree(), &sorted[..]);
                 work.nodes + work.spheres
             })
             .sum();

@@ -1,12 +1,12 @@
 //! [`CpuTracer`]: rays on every thread of this machine.
 
 use rayon::prelude::*;
-use spherule_kernel::tree::{Node, work_in_tree};
+use spherule_kernel::tree::{Tree, work_in_tree};
 use spherule_kernel::{Hit, Ray, Rung, Sphere};
 
 use super::levels::Levels;
 use super::single::Single;
-use crate::scene::tree::{self, Acceleration, MIN_SPHERES};
+use crate::scene::tree::{self, Acceleration, MIN_SPHERES, Nodes};
 
 /// Rays that a thread takes at once.
 const GRAIN: usize = 1 << 10;
@@ -15,7 +15,7 @@ const GRAIN: usize = 1 << 10;
 #[derive(Clone, Debug)]
 pub struct CpuTracer {
     spheres: Vec<Sphere>,
-    nodes: Vec<Node>,
+    nodes: Nodes,
     levels: Option<Levels>,
     /// For each sphere, its index as it was given; empty without a tree.
     order: Vec<u32>,
@@ -28,13 +28,13 @@ impl CpuTracer {
         match tree::grow_still(spheres, acceleration.min_spheres(MIN_SPHERES)) {
             Some(tree) => Self {
                 spheres: tree.sort(spheres),
-                levels: Levels::of(&tree.nodes),
+                levels: Levels::of(tree.nodes.tree()),
                 nodes: tree.nodes,
                 order: tree.order,
             },
             None => Self {
                 spheres: spheres.to_vec(),
-                nodes: Vec::new(),
+                nodes: Nodes::default(),
                 levels: None,
                 order: Vec::new(),
             },
@@ -50,14 +50,14 @@ impl CpuTracer {
 
     /// What traces rays on this rung.
     #[must_use]
-    pub fn single(&self, rung: Rung) -> Single<'_> {
-        Single::new(rung, &self.nodes, self.levels.as_ref())
+    fn single(&self, rung: Rung) -> Single<'_> {
+        Single::new(rung, self.nodes.tree(), self.levels.as_ref())
     }
 
-    /// The tree's nodes; none without one.
+    /// The tree; none without one.
     #[must_use]
-    pub fn nodes(&self) -> &[Node] {
-        &self.nodes
+    pub fn tree(&self) -> Tree<'_> {
+        self.nodes.tree()
     }
 
     /// For each sphere in the order of the tree's leaves, its index as it was given; none without a tree.
@@ -107,7 +107,7 @@ impl CpuTracer {
         }
         let spheres = &self.spheres[..];
         let of = |ray: &Ray| {
-            let work = work_in_tree(rung.to_u32(), any, ray, &self.nodes, spheres);
+            let work = work_in_tree(rung.to_u32(), any, ray, self.tree(), spheres);
             (u64::from(work.nodes), u64::from(work.spheres))
         };
         Some(

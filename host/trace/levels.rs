@@ -6,7 +6,7 @@
 //! level holds the boxes 16 i to 16 i + 15 of the next.
 
 use glam::Vec3;
-use spherule_kernel::tree::Node;
+use spherule_kernel::tree::{Node, Tree};
 
 /// Boxes in a box, and spheres in one at the bottom.
 pub(super) const WIDTH: usize = 16;
@@ -23,9 +23,33 @@ const _: () = assert!(MAX_BOXES <= 1 << Levels::INDEX_BITS);
 #[derive(Clone, Debug)]
 pub struct Levels {
     /// From the top down; there is one at least.
-    pub(super) groups: Vec<Vec<Group>>,
+    pub(super) levels: Vec<Level>,
     /// Of each box at the bottom the first sphere, and how many there are.
     pub(super) spheres: Vec<(u32, u32)>,
+    /// How many spheres there are in all boxes.
+    pub(super) sphere_count: usize,
+}
+
+/// The boxes of one level.
+#[derive(Clone, Debug)]
+pub(super) struct Level {
+    pub(super) groups: Vec<Group>,
+    /// For each group, a bit for each box that there is: numbers that are none meet what is none, too.
+    pub(super) there: Vec<u16>,
+}
+
+impl Level {
+    fn of(boxes: &[Bottom]) -> Self {
+        let there = |some: &[Bottom]| u16::MAX >> (WIDTH - some.len());
+        Self {
+            groups: boxes.chunks(WIDTH).map(Group::of).collect(),
+            there: boxes.chunks(WIDTH).map(there).collect(),
+        }
+    }
+
+    fn bytes(&self) -> usize {
+        size_of_val(&self.groups[..]) + size_of_val(&self.there[..])
+    }
 }
 
 /// The sides of sixteen boxes: the smallest x, y, z, then the largest. A box that is none is empty.
@@ -39,7 +63,8 @@ impl Levels {
 
     /// Of a tree; `None` without one, or of one that is too large, or if this machine has no instructions to use them.
     #[must_use]
-    pub fn of(nodes: &[Node]) -> Option<Self> {
+    pub fn of(tree: Tree<'_>) -> Option<Self> {
+        let nodes = tree.nodes();
         if nodes.len() <= Node::ROOT as usize || !is_usable() {
             return None;
         }
@@ -52,24 +77,27 @@ impl Levels {
         if boxes.len() > MAX_BOXES {
             return None;
         }
-        let spheres = boxes.iter().map(|of| of.spheres).collect();
-        let mut levels = vec![groups(&boxes)];
+        let spheres: Vec<_> = boxes.iter().map(|of| of.spheres).collect();
+        let end_of = |(first, count): &(u32, u32)| *first as usize + *count as usize;
+        let sphere_count = spheres.iter().map(end_of).max()?;
+        let mut levels = vec![Level::of(&boxes)];
         while boxes.len() > WIDTH * MAX_TOP {
             boxes = boxes.chunks(WIDTH).map(around).collect();
-            levels.push(groups(&boxes));
+            levels.push(Level::of(&boxes));
         }
         levels.reverse();
         Some(Self {
-            groups: levels,
+            levels,
             spheres,
+            sphere_count,
         })
     }
 
     /// The memory that they take, in bytes.
     #[must_use]
     pub fn bytes(&self) -> usize {
-        let groups = self.groups.iter().map(|groups| size_of_val(&groups[..]));
-        groups.sum::<usize>() + size_of_val(&self.spheres[..])
+        let levels = self.levels.iter().map(Level::bytes);
+        levels.sum::<usize>() + size_of_val(&self.spheres[..])
     }
 }
 
@@ -87,20 +115,20 @@ struct Bottom {
     spheres: (u32, u32),
 }
 
-fn groups(boxes: &[Bottom]) -> Vec<Group> {
-    let group = |some: &[Bottom]| {
+impl Group {
+    /// Of sixteen boxes at most.
+    fn of(boxes: &[Bottom]) -> Self {
         let beyond = Node::MAX_COORDINATE;
         let none = |side| [if side < 3 { beyond } else { -beyond }; WIDTH];
         let mut sides = [0, 1, 2, 3, 4, 5].map(none);
-        for (lane, of) in some.iter().enumerate() {
+        for (lane, of) in boxes.iter().take(WIDTH).enumerate() {
             for axis in 0..3 {
                 sides[axis][lane] = of.low[axis];
                 sides[3 + axis][lane] = of.high[axis];
             }
         }
-        Group(sides)
-    };
-    boxes.chunks(WIDTH).map(group).collect()
+        Self(sides)
+    }
 }
 
 /// What is around boxes.

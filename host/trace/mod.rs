@@ -3,8 +3,8 @@
 //! | module | holds |
 //! | --- | --- |
 //! | [`cpu`] | [`CpuTracer`]: on every thread of this machine |
-//! | [`single`] | rays one by one on the CPU, several boxes and spheres side by side |
-//! | [`levels`] | [`Levels`](levels::Levels): boxes of sixteen boxes, for worlds that are not too large |
+//! | `single` | rays one by one on the CPU, several boxes and spheres side by side |
+//! | `levels` | boxes of sixteen boxes, for worlds that are not too large |
 //! | [`gpu`] | [`GpuTracer`]: on a GPU |
 
 #[cfg(target_arch = "x86_64")]
@@ -13,8 +13,8 @@ mod avx2;
 mod avx512;
 pub mod cpu;
 pub mod gpu;
-pub mod levels;
-pub mod single;
+pub(crate) mod levels;
+pub(crate) mod single;
 #[cfg(target_arch = "x86_64")]
 mod sixteen;
 #[cfg(target_arch = "x86_64")]

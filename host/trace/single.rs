@@ -13,7 +13,7 @@ use spherule_kernel::candidates::SLACK;
 use spherule_kernel::nearest::{MovingSpheres, Spheres};
 use spherule_kernel::precision::{Precision, Robust, intersect};
 use spherule_kernel::traversal::Traversal;
-use spherule_kernel::tree::{Node, is_occluded_in_tree, nearest_hit_in_tree};
+use spherule_kernel::tree::{Extent, Node, Tree, is_occluded_in_tree, nearest_hit_in_tree};
 use spherule_kernel::{Effects, Hit, Ray, Rung, Sphere};
 
 #[cfg(target_arch = "x86_64")]
@@ -34,8 +34,10 @@ pub struct Single<'a> {
     pub(super) rung: Rung,
     /// The rung's question.
     intersect: fn(Sphere, &Ray) -> f32,
-    /// The tree's; none if every sphere is to be tested.
-    pub(super) nodes: &'a [Node],
+    /// The tree; none if every sphere is to be tested.
+    pub(super) tree: Tree<'a>,
+    /// What its first node says.
+    pub(super) extent: Extent,
     /// That the machine has it.
     #[cfg(target_arch = "x86_64")]
     features: Option<Features>,
@@ -45,9 +47,9 @@ pub struct Single<'a> {
 }
 
 impl<'a> Single<'a> {
-    /// For rays on this rung. With nodes, spheres are in the order of their leaves. Levels are those of the nodes.
+    /// For rays on this rung. With a tree, spheres are in the order of its leaves. Levels are those of the tree.
     #[must_use]
-    pub fn new(rung: Rung, nodes: &'a [Node], levels: Option<&'a Levels>) -> Self {
+    pub fn new(rung: Rung, tree: Tree<'a>, levels: Option<&'a Levels>) -> Self {
         fn on<const RUNG: u32>(sphere: Sphere, ray: &Ray) -> f32 {
             intersect(RUNG, sphere, ray)
         }
@@ -66,7 +68,8 @@ impl<'a> Single<'a> {
                 Rung::Double => on::<{ Rung::Double.to_u32() }>,
                 Rung::Certified => on::<{ Rung::Certified.to_u32() }>,
             },
-            nodes,
+            tree,
+            extent: Extent::of_node(tree.nodes().first().unwrap_or(&Node::default())),
             #[cfg(target_arch = "x86_64")]
             features,
             #[cfg(target_arch = "x86_64")]
@@ -84,7 +87,8 @@ impl<'a> Single<'a> {
     ) {
         #[cfg(target_arch = "x86_64")]
         if let (Some((wide, levels)), Some(spheres)) = (self.levels, spheres.at_rest())
-            && (self.rung == Rung::Robust || levels.groups.len() <= 2)
+            && (self.rung == Rung::Robust || levels.levels.len() <= 2)
+            && levels.sphere_count <= spheres.len()
         {
             // SAFETY: the machine has AVX-512, as the proof says.
             unsafe { stream::trace::<ANY>(wide, levels, self, rays, spheres, put) };
@@ -101,7 +105,7 @@ impl<'a> Single<'a> {
     }
 
     fn has_tree(&self) -> bool {
-        self.nodes.len() > Node::ROOT as usize
+        !self.tree.is_none()
     }
 
     fn trace_one<const ANY: bool, S: Resting + ?Sized>(&self, ray: &Ray, spheres: &S) -> Hit {
@@ -112,7 +116,8 @@ impl<'a> Single<'a> {
         }
         #[cfg(target_arch = "x86_64")]
         if let (Some((wide, levels)), Some(spheres)) = (self.levels, spheres.at_rest())
-            && levels.groups.len() <= 2
+            && levels.levels.len() <= 2
+            && levels.sphere_count <= spheres.len()
         {
             // SAFETY: the machine has AVX-512, as the proof says.
             return unsafe { stream::trace_one::<ANY>(wide, levels, self, ray, spheres) };
@@ -123,13 +128,13 @@ impl<'a> Single<'a> {
         }
         let rung = self.rung.to_u32();
         if ANY {
-            if is_occluded_in_tree(rung, ray, self.nodes, spheres) {
+            if is_occluded_in_tree(rung, ray, self.tree, spheres) {
                 Hit { t: 0.0, sphere: 0 }
             } else {
                 Hit::NONE
             }
         } else {
-            nearest_hit_in_tree(rung, ray, self.nodes, spheres)
+            nearest_hit_in_tree(rung, ray, self.tree, spheres)
         }
     }
 
@@ -219,7 +224,12 @@ impl Search {
         if !ANY {
             self.ask_at_last();
         }
-        self.hit
+        // No hit after all only where numbers are beyond what bounds are made for.
+        if self.hit.t < Hit::NONE_T {
+            self.hit
+        } else {
+            Hit::NONE
+        }
     }
 
     /// Asks about the sphere that was found without.

@@ -4,7 +4,7 @@ use std::arch::x86_64::*;
 
 use glam::Vec3;
 use spherule_kernel::bounds::Line;
-use spherule_kernel::tree::{Node, Slabs};
+use spherule_kernel::tree::{Extent, Slabs};
 use spherule_kernel::{Hit, Ray, Rung, Sphere};
 
 use super::avx512::{self, LANES};
@@ -94,7 +94,7 @@ pub(super) fn end_of(slabs: &Slabs, t: f32) -> f32 {
 impl Sixteen {
     /// Takes the rays of a slice, sixteen at most.
     #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
-    pub(super) fn take(&mut self, rung: Rung, rays: &[Ray], nodes: &[Node]) {
+    pub(super) fn take(&mut self, rung: Rung, rays: &[Ray], world: &Extent) {
         for (i, ray) in rays.iter().take(LANES).enumerate() {
             for axis in 0..3 {
                 self.origin[axis].0[i] = ray.origin[axis];
@@ -104,18 +104,17 @@ impl Sixteen {
             self.end.0[i] = ray.t_max;
         }
         match rung {
-            Rung::Textbook => self.ready::<{ Rung::Textbook.to_u32() }>(nodes),
-            Rung::Robust => self.ready::<{ Rung::Robust.to_u32() }>(nodes),
+            Rung::Textbook => self.ready::<{ Rung::Textbook.to_u32() }>(world),
+            Rung::Robust => self.ready::<{ Rung::Robust.to_u32() }>(world),
             // Boxes need not be wider for the others.
-            _ => self.ready::<{ Rung::Certified.to_u32() }>(nodes),
+            _ => self.ready::<{ Rung::Certified.to_u32() }>(world),
         }
     }
 
     /// Loops over arrays become vector instructions.
     #[inline(never)]
     #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
-    fn ready<const RUNG: u32>(&mut self, nodes: &[Node]) {
-        let world = [nodes[0]];
+    fn ready<const RUNG: u32>(&mut self, world: &Extent) {
         for i in 0..LANES {
             let at = |of: &[Lanes<f32>; 3]| Vec3::new(of[0].0[i], of[1].0[i], of[2].0[i]);
             let ray = Ray {
@@ -128,7 +127,7 @@ impl Sixteen {
             self.end.0[i] = ray.end();
             self.squared.0[i] = a;
             self.inverse_squared.0[i] = 1.0 / a;
-            let slabs = Slabs::of(RUNG, &ray, &world);
+            let slabs = Slabs::of(RUNG, &ray, world);
             self.slabs.end.0[i] = end_of(&slabs, ray.end());
             let line = Line::of(&ray);
             self.scaled_squared.0[i] = line.a;

@@ -14,7 +14,7 @@ use spherule_kernel::tree::Slabs;
 use spherule_kernel::{Hit, Ray, Rung, Sphere};
 
 use super::avx512::{Avx512, LANES};
-use super::levels::{Group, Levels};
+use super::levels::{Group, Level, Levels};
 use super::single::Single;
 use super::sixteen::{Planes, Sixteen, end_of};
 use super::walk::{self, Features};
@@ -64,10 +64,12 @@ pub(super) fn trace<const ANY: bool>(
     mut put: impl FnMut(usize, Hit),
 ) {
     let mut room = ROOM.take();
-    let (top, below) = levels.groups.split_first().expect("a level");
+    let Some((top, below)) = levels.levels.split_first() else {
+        return;
+    };
     for (some, rays) in rays.chunks(LANES).enumerate() {
         let mut put = |index: usize, hit: Hit| put(LANES * some + index, hit);
-        room.sixteen.take(single.rung, rays, single.nodes);
+        room.sixteen.take(single.rung, rays, &single.extent);
         room.begin(top, rays.len());
         for level in below {
             room.descend(level);
@@ -107,13 +109,14 @@ pub(super) fn trace_one<const ANY: bool>(
 ) -> Hit {
     /// A key's bits that say which box.
     const INDEX: i32 = MOST_ALONE as i32 - 1;
-    let slabs = Slabs::of(single.rung.to_u32(), ray, single.nodes);
+    let slabs = Slabs::of(single.rung.to_u32(), ray, &single.extent);
     let planes = Planes::of(&slabs, ray.end());
     // Where a box is entered, as a float's bits, whose lowest say which box.
     let mut keys = [const { MaybeUninit::<i32>::uninit() }; MOST_ALONE + LANES];
     let mut count = 0;
-    let mut enter = |group: &Group, first: usize| {
-        let (is_met, enters) = group.meets(&planes);
+    let mut enter = |level: &Level, index: usize| {
+        let (is_met, enters) = level.meets(index, &planes);
+        let first = LANES * index;
         // (enters & !INDEX) | index
         let found = _mm512_ternarylogic_epi32::<0b1101_1000>(
             _mm512_castps_si512(enters),
@@ -127,18 +130,18 @@ pub(super) fn trace_one<const ANY: bool>(
         }
         count += is_met.count_ones() as usize;
     };
-    if let [top, bottom] = &levels.groups[..] {
-        for (at, group) in top.iter().enumerate() {
-            let (mut met, _) = group.meets(&planes);
+    if let [top, bottom] = &levels.levels[..] {
+        for at in 0..top.groups.len() {
+            let (mut met, _) = top.meets(at, &planes);
             while met != 0 {
                 let index = LANES * at + met.trailing_zeros() as usize;
                 met &= met - 1;
-                enter(&bottom[index], LANES * index);
+                enter(bottom, index);
             }
         }
     } else {
-        for (index, group) in levels.groups[0].iter().enumerate() {
-            enter(group, LANES * index);
+        for index in 0..levels.levels[0].groups.len() {
+            enter(&levels.levels[0], index);
         }
     }
     // SAFETY: as many were written.
@@ -169,11 +172,11 @@ impl Room {
     /// Finds the boxes on top that rays meet.
     #[inline]
     #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
-    fn begin(&mut self, top: &[Group], count: usize) {
-        let mut pairs = Writer::new(&mut self.pairs, LANES * top.len() * count);
+    fn begin(&mut self, top: &Level, count: usize) {
+        let mut pairs = Writer::new(&mut self.pairs, LANES * top.groups.len() * count);
         for ray in 0..count {
-            for (index, group) in top.iter().enumerate() {
-                let (is_met, _) = group.meets(&self.sixteen.planes(ray));
+            for index in 0..top.groups.len() {
+                let (is_met, _) = top.meets(index, &self.sixteen.planes(ray));
                 let first = _mm512_set1_epi32(pair(ray, LANES * index).cast_signed());
                 // SAFETY: sixteen of each group at most.
                 unsafe { pairs.push(is_met, _mm512_or_epi32(first, lanes())) };
@@ -185,13 +188,12 @@ impl Room {
     /// Finds the boxes of a level that rays meet in the groups that they are paired with.
     #[inline]
     #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
-    fn descend(&mut self, level: &[Group]) {
+    fn descend(&mut self, level: &Level) {
         let mut below = Writer::new(&mut self.below, LANES * self.pairs.len());
         for met in &self.pairs {
             let (ray, index) = of_pair(*met);
-            // SAFETY: a group of those on top, or that of a box of the level above, which each have one here.
-            let group = unsafe { level.get_unchecked(index) };
-            let (is_met, _) = group.meets(&self.sixteen.planes(ray));
+            // A group of those on top, or that of a box that there is on the level above: each has one here.
+            let (is_met, _) = level.meets(index, &self.sixteen.planes(ray));
             let first = _mm512_set1_epi32(pair(ray, LANES * index).cast_signed());
             // SAFETY: sixteen of each pair at most.
             unsafe { below.push(is_met, _mm512_or_epi32(first, lanes())) };
@@ -212,7 +214,7 @@ impl Room {
             let mut indices = Writer::new(&mut self.spheres, WAITING);
             for met in some {
                 let (ray, index) = of_pair(*met);
-                // SAFETY: a box at the bottom, whose spheres are there.
+                // SAFETY: a box that there is at the bottom, and there are spheres for all boxes, as `Single` asks.
                 let (first, some) = unsafe {
                     let (first, count) = *levels.spheres.get_unchecked(index);
                     let end = first as usize + count as usize;
@@ -300,8 +302,18 @@ fn joined(upper: __m512i, lower: __m512i) -> (__m512i, __m512i) {
     )
 }
 
+impl Level {
+    /// Which boxes of a group a ray meets, a bit each, and where it enters them.
+    #[inline]
+    #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
+    fn meets(&self, index: usize, planes: &Planes) -> (__mmask16, __m512) {
+        let (is_met, enters) = self.groups[index].meets(planes);
+        (is_met & self.there[index], enters)
+    }
+}
+
 impl Group {
-    /// Which boxes a ray meets, a bit each, and where it enters them.
+    /// Which boxes a ray meets, a bit each, and where it enters them. Of a ray with numbers that are none it may be any.
     #[inline]
     #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
     fn meets(&self, planes: &Planes) -> (__mmask16, __m512) {
@@ -421,7 +433,7 @@ mod tests {
         for (spheres, is_heap) in worlds {
             let tree = grow_still(&spheres, 1).expect("a tree");
             let spheres = tree.sort(&spheres);
-            let levels = Levels::of(&tree.nodes).expect("levels");
+            let levels = Levels::of(tree.nodes.tree()).expect("levels");
             assert!(!is_heap || levels.spheres.len() * LANES > MOST);
             let rays = rays(&mut random);
             let moving = MovingSpheres {
@@ -432,7 +444,7 @@ mod tests {
             };
             let name = format!("{} spheres, a heap: {is_heap}", spheres.len());
             for rung in Rung::ALL {
-                let single = Single::new(rung, &tree.nodes, Some(&levels));
+                let single = Single::new(rung, tree.nodes.tree(), Some(&levels));
                 let code = rung.to_u32();
                 let mut found = vec![(Hit::NONE, Hit::NONE); rays.len()];
                 single.trace::<false, _>(&rays, &spheres[..], |index, hit| found[index].0 = hit);
@@ -455,6 +467,6 @@ mod tests {
     fn large_worlds_have_no_levels() {
         let mut random = Random::new(12);
         let tree = grow_still(&world(&mut random, 300_000), 1).expect("a tree");
-        assert!(Levels::of(&tree.nodes).is_none());
+        assert!(Levels::of(tree.nodes.tree()).is_none());
     }
 }

@@ -110,7 +110,7 @@ macro_rules! with_features {
         ) -> Hit {
             let mut stack = Stack::new();
             let mut walk = Walk::of(wide, single, ray);
-            while walk.step::<ANY, S>(single.nodes, spheres, &mut stack) {}
+            while walk.step::<ANY, S>(single.tree.nodes(), spheres, &mut stack) {}
             walk.search.finish::<ANY>()
         }
 
@@ -146,7 +146,7 @@ fn in_turns<const ANY: bool, W: Wide, S: Resting + ?Sized>(
     spheres: &S,
     mut put: impl FnMut(usize, Hit),
 ) {
-    let nodes = single.nodes;
+    let nodes = single.tree.nodes();
     let mut stacks = [const { Stack::new() }; RAYS];
     let mut rest = rays.iter().enumerate();
     let mut walks = [const { MaybeUninit::<Walk<W>>::uninit() }; RAYS];
@@ -248,7 +248,7 @@ struct Walk<W: Wide> {
 impl<W: Wide> Walk<W> {
     #[inline(always)]
     fn of(wide: W, single: &Single<'_>, ray: &Ray) -> Self {
-        let slabs = Slabs::of(single.rung.to_u32(), ray, single.nodes);
+        let slabs = Slabs::of(single.rung.to_u32(), ray, &single.extent);
         let mut walk = Self {
             wide,
             search: single.search(ray),
@@ -343,6 +343,7 @@ impl<W: Wide> Walk<W> {
 pub(super) mod tests {
     use glam::Vec3;
     use spherule_kernel::nearest::{MovingSpheres, Spheres, is_occluded, nearest_hit_in};
+    use spherule_kernel::tree::Tree;
     use spherule_kernel::{Effects, Rung, Sphere};
 
     use super::*;
@@ -374,14 +375,14 @@ pub(super) mod tests {
             .collect()
     }
 
-    fn compare<S: Resting + ?Sized>(nodes: &[Node], spheres: &S, rays: &[Ray]) {
+    fn compare<S: Resting + ?Sized>(tree: Tree<'_>, spheres: &S, rays: &[Ray]) {
         let all = [
             Avx2::detect().map(Features::Avx2),
             Avx512::detect().map(Features::Avx512),
         ];
         for features in all.into_iter().flatten() {
             for rung in Rung::ALL {
-                let single = Single::new(rung, nodes, None);
+                let single = Single::new(rung, tree, None);
                 let code = rung.to_u32();
                 let expected = |ray: &Ray| nearest_hit_in(code, ray, spheres, 0, u32::MAX);
                 let (mut count, mut hits) = (0, 0);
@@ -410,7 +411,11 @@ pub(super) mod tests {
         let mut random = Random::new(5);
         let spheres = world(&mut random, 3000);
         let tree = grow_still(&spheres, 1).expect("a tree");
-        compare(&tree.nodes, &tree.sort(&spheres)[..], &rays(&mut random));
+        compare(
+            tree.nodes.tree(),
+            &tree.sort(&spheres)[..],
+            &rays(&mut random),
+        );
     }
 
     /// Spheres in motion are tested where they are at the time, not where they lie in memory.
@@ -438,7 +443,7 @@ pub(super) mod tests {
             time: 1.0,
             effects: Effects::MOTION_BLUR,
         };
-        compare(&tree.nodes, &moving, &rays(&mut random));
+        compare(tree.nodes.tree(), &moving, &rays(&mut random));
         let resting = MovingSpheres {
             effects: Effects::default(),
             ..moving

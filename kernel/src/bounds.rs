@@ -100,7 +100,7 @@ impl Line {
     pub fn of(ray: &Ray) -> Self {
         let scale = power_of_two_under(ray.direction);
         // One over it: exponents that add up to those of one.
-        let unit = f32::from_bits(0x7f00_0000 - scale.to_bits());
+        let unit = f32::from_bits(0x7f00_0000_u32.wrapping_sub(scale.to_bits()));
         let direction = ray.direction * scale;
         let a = direction.dot(direction);
         Self {

@@ -77,8 +77,9 @@ impl Camera {
         // Written with integers up to the one division, so that the centre of an odd-sized image
         // is exactly (0, 0) and opposite pixels are exact mirror images. Below 2²³ pixels a side
         // the integers are exact in f32.
-        let x = (2 * pixel.x + 1) as f32 - size.x as f32;
-        let y = size.y as f32 - (2 * pixel.y + 1) as f32;
+        let twice = |middle: u32| middle.wrapping_mul(2).wrapping_add(1) as f32;
+        let x = twice(pixel.x) - size.x as f32;
+        let y = size.y as f32 - twice(pixel.y);
         Vec2::new(x / size.x as f32, y / size.y as f32)
     }
 }

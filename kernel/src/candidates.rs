@@ -18,5 +18,5 @@ pub const SLACK: f32 = 1.0 / (1 << 18) as f32;
 #[must_use]
 pub fn power_of_two_under(vector: Vec3) -> f32 {
     let largest = vector.abs().max_element().max(f32::MIN_POSITIVE);
-    f32::from_bits(0x7f00_0000 - (largest.to_bits() & 0x7f80_0000))
+    f32::from_bits(0x7f00_0000_u32.wrapping_sub(largest.to_bits() & 0x7f80_0000))
 }

@@ -20,7 +20,7 @@ use crate::precision::intersect;
 use crate::shading::shade;
 use crate::throughput::products;
 use crate::traversal::OneByOne;
-use crate::tree::{Node, is_occluded_in_tree, nearest_hit_in_tree};
+use crate::tree::{Node, Tree, is_occluded_in_tree, nearest_hit_in_tree};
 use crate::walk::{Walk, walk_inside};
 use crate::{
     Accumulator, Effects, Hit, Launch, Light, Material, PathLaunch, Pixel, Ray, Sphere, Surface,
@@ -45,14 +45,14 @@ pub fn render(
     if pixel.x < launch.tile_size.x && pixel.y < launch.tile_size.y {
         let index = (pixel.y * launch.tile_size.x + pixel.x) as usize;
         if index < pixels.len() {
-            // SAFETY: as just asked.
+            // SAFETY: as just asked; and the host binds a tree's nodes.
             unsafe {
                 *pixels.index_unchecked_mut(index) = render_pixel(
                     shading,
                     rung,
                     has_tree,
                     launch,
-                    nodes,
+                    Tree::of_unchecked(nodes),
                     spheres,
                     material_ids,
                     materials,
@@ -131,6 +131,8 @@ pub fn trace_paths(
             if is_exact == 0 {
                 effects = effects.within(Effects::from_bits(launch.called_effects));
             }
+            // SAFETY: the host binds a tree's.
+            let tree = unsafe { Tree::of_unchecked(nodes) };
             let scenery = Scenery {
                 effects,
                 rung,
@@ -138,7 +140,7 @@ pub fn trace_paths(
                 traversal: OneByOne {
                     rung,
                     has_tree,
-                    nodes,
+                    tree,
                 },
                 spheres,
                 velocities,
@@ -181,7 +183,9 @@ pub fn trace_rays_in_tree(
 ) {
     let index = (id.y * groups.x * 64 + id.x) as usize;
     if index < rays.len() && index < hits.len() {
-        hits[index] = nearest_hit_in_tree(rung, &rays[index], nodes, spheres);
+        // SAFETY: the host binds a tree's nodes.
+        let tree = unsafe { Tree::of_unchecked(nodes) };
+        hits[index] = nearest_hit_in_tree(rung, &rays[index], tree, spheres);
     }
 }
 
@@ -214,7 +218,9 @@ pub fn occlude_rays_in_tree(
 ) {
     let index = (id.y * groups.x * 64 + id.x) as usize;
     if index < rays.len() && index < occluded.len() {
-        occluded[index] = u32::from(is_occluded_in_tree(rung, &rays[index], nodes, spheres));
+        // SAFETY: the host binds a tree's nodes.
+        let tree = unsafe { Tree::of_unchecked(nodes) };
+        occluded[index] = u32::from(is_occluded_in_tree(rung, &rays[index], tree, spheres));
     }
 }
 

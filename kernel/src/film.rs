@@ -3,8 +3,8 @@
 
 use bytemuck::{Pod, Zeroable};
 use glam::{UVec2, Vec3, Vec4};
-use spirv_std::arch::IndexUnchecked;
 
+use crate::arithmetic::elements::read;
 use crate::camera::Camera;
 use crate::fog::Fog;
 use crate::hit::Hit;
@@ -16,7 +16,7 @@ use crate::shading::shade;
 use crate::sky::Sky;
 use crate::sphere::Sphere;
 use crate::surface::Surface;
-use crate::tree::{Node, nearest_hit_in_tree};
+use crate::tree::{Tree, nearest_hit_in_tree};
 
 /// One launch: a tile of the image against a run of the spheres.
 ///
@@ -100,7 +100,7 @@ impl Pixel {
 /// [`Shading::to_u32`](crate::Shading::to_u32) and
 /// [`Rung::to_u32`](crate::precision::Rung::to_u32). Returns what the pixel must hold now.
 ///
-/// With `has_tree` 1 the spheres are those of the tree `nodes`, whatever run of them the launch names.
+/// With `has_tree` 1 the spheres are those of `tree`, whatever run of them the launch names.
 /// `spheres` and `material_ids` run in parallel; an index into `materials` that leaves the
 /// table takes its last entry.
 #[expect(
@@ -114,7 +114,7 @@ pub fn render_pixel(
     rung: u32,
     has_tree: u32,
     launch: &Launch,
-    nodes: &[Node],
+    tree: Tree<'_>,
     spheres: &[Sphere],
     material_ids: &[u32],
     materials: &[Material],
@@ -123,7 +123,7 @@ pub fn render_pixel(
 ) -> Pixel {
     let ray = launch.ray(pixel, previous);
     let hit = if has_tree == 1 {
-        nearest_hit_in_tree(rung, &ray, nodes, spheres)
+        nearest_hit_in_tree(rung, &ray, tree, spheres)
     } else {
         let (first, count) = (launch.first_sphere, launch.sphere_count);
         nearest_hit_in(rung, &ray, spheres, first, count)
@@ -145,7 +145,7 @@ impl Launch {
     #[inline]
     #[must_use]
     pub fn ray(&self, pixel: UVec2, previous: &Pixel) -> Ray {
-        let at = self.tile_origin + pixel;
+        let at = self.tile_origin.wrapping_add(pixel);
         let mut ray = self.camera.pixel_ray(at, self.image_size);
         if self.first_of_tile == 0 {
             ray.t_max = previous.depth();
@@ -191,8 +191,7 @@ impl Launch {
         let mut result = otherwise;
         if hit.is_some() {
             let index = hit.sphere as usize;
-            // SAFETY: a hit names a sphere of the slice.
-            let sphere = unsafe { *spheres.index_unchecked(index) };
+            let sphere = read(spheres, index);
             let material = material_of(index, material_ids, materials);
             let surface = Surface::at(ray, hit.t, sphere);
             result = Pixel::new(shade(shading, ray, hit.t, &surface, &material), hit.t);
@@ -252,17 +251,35 @@ pub struct PathLaunch {
 pub struct Accumulator {
     /// The sums of radiance and of alpha.
     pub(crate) color_alpha: Vec4,
-    /// The sum of squared luminance, the number of samples, the depth of the first.
+    /// Of the luminance, the sum of squared differences from its mean; the number of samples; the depth of the first; the mean
+    /// luminance.
     pub(crate) statistics: Vec4,
 }
 
 impl Accumulator {
+    /// The largest channel of a sample's radiance: of 2¹⁶ squares of it the sum is still a float.
+    pub const BRIGHTEST: f32 = (1_u64 << 55) as f32;
+
     /// Adds a sample: its radiance, whether it saw anything but the background, and how far away
     /// that was.
+    ///
+    /// The variance is kept as B. P. Welford does, Note on a method for calculating corrected sums of squares and
+    /// products, Technometrics 4 (1962): no difference of large sums, which in 32-bit floats would be their roundings where light
+    /// is bright and steady.
+    ///
+    /// What is brighter than [`Accumulator::BRIGHTEST`] counts as that, and what is no number as dark: one sample does not take
+    /// away a pixel.
     #[inline]
     pub fn add(&mut self, radiance: Vec3, alpha: f32, depth: f32) {
+        let radiance = Vec3::new(
+            bounded(radiance.x),
+            bounded(radiance.y),
+            bounded(radiance.z),
+        );
         let luminance = luminance(radiance);
         let count = self.statistics.y;
+        let away = luminance - self.statistics.w;
+        let mean = self.statistics.w + away / (count + 1.0);
         // The depth of a pixel is that of its first sample.
         let depth = if count == 0.0 {
             depth
@@ -271,10 +288,10 @@ impl Accumulator {
         };
         self.color_alpha += radiance.extend(alpha);
         self.statistics = Vec4::new(
-            self.statistics.x + luminance * luminance,
+            self.statistics.x + away * (luminance - mean),
             count + 1.0,
             depth,
-            0.0,
+            mean,
         );
     }
 
@@ -316,9 +333,19 @@ impl Accumulator {
         if count < 2.0 {
             return 0.0;
         }
-        let mean = luminance(self.color());
-        let variance = (self.statistics.x / count - mean * mean).max(0.0);
-        variance / (count - 1.0)
+        self.statistics.x.max(0.0) / (count - 1.0) / count
+    }
+}
+
+/// A channel of a sample's radiance, as it counts; there is none below zero.
+#[inline]
+fn bounded(channel: f32) -> f32 {
+    if channel >= Accumulator::BRIGHTEST {
+        Accumulator::BRIGHTEST
+    } else if channel > 0.0 {
+        channel
+    } else {
+        0.0
     }
 }
 
@@ -339,3 +366,33 @@ const _: () = {
     assert!(core::mem::offset_of!(PathLaunch, fog) == 224);
     assert!(size_of::<Accumulator>() == 32);
 };
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Bright light that hardly varies: what a difference of sums of squares makes of it is all rounding.
+    #[test]
+    fn the_variance_of_bright_and_steady_light_keeps_its_digits() {
+        let mut pixel = Accumulator::default();
+        for sample in 0..4096 {
+            let light = 1000.0 + if sample % 2 == 0 { 0.25 } else { -0.25 };
+            pixel.add(Vec3::splat(light), 1.0, 1.0);
+        }
+        let expected = 0.25 * 0.25 / 4096.0;
+        let found = pixel.variance_of_mean();
+        assert!((found / expected - 1.0).abs() < 0.01, "{found} {expected}");
+    }
+
+    #[test]
+    fn one_sample_that_is_no_number_leaves_the_others() {
+        let mut pixel = Accumulator::default();
+        pixel.add(Vec3::splat(2.0), 1.0, 1.0);
+        pixel.add(Vec3::new(f32::NAN, 2.0, f32::NEG_INFINITY), 1.0, 1.0);
+        assert_eq!(pixel.color(), Vec3::new(1.0, 2.0, 1.0));
+        for _ in 0..1 << 16 {
+            pixel.add(Vec3::splat(f32::INFINITY), 1.0, 1.0);
+        }
+        assert!(pixel.color().is_finite() && pixel.variance_of_mean().is_finite());
+    }
+}

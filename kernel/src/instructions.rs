@@ -60,7 +60,7 @@ pub fn highest_bit(bits: u32) -> u32 {
     }
     #[cfg(not(target_arch = "spirv"))]
     {
-        31 - bits.leading_zeros()
+        31_u32.wrapping_sub(bits.leading_zeros())
     }
 }
 

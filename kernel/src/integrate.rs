@@ -23,7 +23,7 @@ use crate::hit::Hit;
 use crate::light::{self, Light};
 use crate::material::{Material, material_of};
 use crate::microfacet::{RoughMetal, SMOOTHEST, schlick};
-use crate::nearest::{MovingSpheres, Spheres as _};
+use crate::nearest::MovingSpheres;
 use crate::optics::{Incidence, reflect};
 use crate::precision::intersect;
 use crate::random::Sampler;
@@ -73,11 +73,10 @@ impl<T: Traversal> Scenery<'_, T> {
         }
     }
 
-    /// The sphere with this index, which is below their number, where it is at `time`.
+    /// The sphere with this index where it is at `time`.
     #[inline]
     fn sphere(&self, index: usize, time: f32) -> Sphere {
-        // SAFETY: hits and lights name spheres of the world.
-        unsafe { self.spheres_at(time).sphere(index as u32) }
+        self.spheres_at(time).read(index)
     }
 
     #[inline]
@@ -145,7 +144,7 @@ pub fn trace_pixel<T: Traversal>(
     let pixel = launch.tile_origin + pixel;
     let mut accumulator = previous;
     let mut sample = launch.first_sample;
-    let end = sample + launch.sample_count;
+    let end = sample.wrapping_add(launch.sample_count);
     let mut sampler = Sampler::new(launch.seed, pixel, sample);
     let mut path = start(scenery, pixel, &sampler);
     while sample < end {

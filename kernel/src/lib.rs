@@ -49,16 +49,19 @@
 #![cfg_attr(target_arch = "spirv", feature(asm_experimental_arch))]
 #![deny(missing_docs)]
 
+#[cfg(not(target_arch = "spirv"))]
+extern crate alloc;
+
 pub mod arithmetic;
 pub mod bounds;
-#[cfg(feature = "entry-points")]
+#[cfg(all(feature = "entry-points", target_arch = "spirv"))]
 mod by_tiles;
 pub mod camera;
 pub mod canary;
 pub mod candidates;
 pub mod cone;
 pub mod effects;
-#[cfg(feature = "entry-points")]
+#[cfg(all(feature = "entry-points", target_arch = "spirv"))]
 pub mod entry;
 pub mod film;
 pub mod fog;

@@ -7,11 +7,11 @@ use core::f32::consts::{FRAC_1_PI, TAU};
 
 use bytemuck::{Pod, Zeroable};
 use glam::{Vec2, Vec3};
-use spirv_std::arch::IndexUnchecked;
 // On the CPU, std has `f32::sqrt`.
 #[cfg(target_arch = "spirv")]
 use spirv_std::num_traits::Float as _;
 
+use crate::arithmetic::elements::read;
 use crate::sampling::{cone, cone_density, uniform_sphere};
 use crate::sphere::Sphere;
 
@@ -94,24 +94,22 @@ impl Light {
     }
 }
 
-/// The light that `u` chooses, of at least one: the first whose cumulative probability exceeds it.
+/// The light that `u` chooses: the first whose cumulative probability exceeds it. Of none, one that is
+/// never found.
 #[inline]
 #[must_use]
 pub(crate) fn choose(lights: &[Light], u: f32) -> Light {
     let mut low = 0;
-    let mut high = lights.len() - 1;
+    let mut high = lights.len().max(1) - 1;
     while low < high {
-        let middle = (low + high) / 2;
-        // SAFETY: below `high`, which is in the slice.
-        let cumulative = unsafe { lights.index_unchecked(middle) }.cumulative;
-        if u < cumulative {
+        let middle = low + (high - low) / 2;
+        if u < read(lights, middle).cumulative {
             high = middle;
         } else {
             low = middle + 1;
         }
     }
-    // SAFETY: at most the last index.
-    unsafe { *lights.index_unchecked(low) }
+    read(lights, low)
 }
 
 /// A direction in which a sphere is seen from `point`, and its density; the whole sphere of

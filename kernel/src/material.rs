@@ -2,7 +2,8 @@
 
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
-use spirv_std::arch::IndexUnchecked;
+
+use crate::arithmetic::elements::read;
 
 /// A material. Spheres share materials by index, four bytes a sphere.
 ///
@@ -96,12 +97,8 @@ impl Material {
 #[must_use]
 pub fn material_of(sphere: usize, material_ids: &[u32], materials: &[Material]) -> Material {
     if sphere < material_ids.len() && !materials.is_empty() {
-        // SAFETY: both are tested just above, the second by cutting to the last.
-        unsafe {
-            let id = *material_ids.index_unchecked(sphere);
-            let last = materials.len() as u32 - 1;
-            *materials.index_unchecked(id.min(last) as usize)
-        }
+        let last = materials.len() as u32 - 1;
+        read(materials, read(material_ids, sphere).min(last) as usize)
     } else {
         Material::diffuse(Vec3::ONE)
     }

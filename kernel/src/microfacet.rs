@@ -15,11 +15,11 @@
 use core::f32::consts::{FRAC_1_PI, PI, TAU};
 
 use glam::{Vec2, Vec3};
-use spirv_std::arch::IndexUnchecked;
 // On the CPU, std has these functions.
 #[cfg(target_arch = "spirv")]
 use spirv_std::num_traits::Float as _;
 
+use crate::arithmetic::elements::read;
 use crate::sampling::{cosine_density, uniform_sphere};
 use crate::surface::unit;
 
@@ -160,15 +160,11 @@ fn look_up(table: &[f32], cosine: f32, alpha: f32) -> f32 {
     );
     let (x1, y1) = (x - x0 as f32, y - y0 as f32);
     let at = y0 * ALBEDO_SIDE + x0;
-    // SAFETY: at most ALBEDO_SIDE² − 1, below the length of the table.
-    let (a, b, c, d) = unsafe {
-        (
-            *table.index_unchecked(at),
-            *table.index_unchecked(at + 1),
-            *table.index_unchecked(at + ALBEDO_SIDE),
-            *table.index_unchecked(at + ALBEDO_SIDE + 1),
-        )
-    };
+    let (a, b) = (read(table, at), read(table, at + 1));
+    let (c, d) = (
+        read(table, at + ALBEDO_SIDE),
+        read(table, at + ALBEDO_SIDE + 1),
+    );
     let low = a + (b - a) * x1;
     low + (c + (d - c) * x1 - low) * y1
 }
@@ -183,8 +179,7 @@ fn mean_albedo(table: &[f32], alpha: f32) -> f32 {
     let y = (alpha * last).clamp(0.0, last);
     let y0 = (y as usize).min(ALBEDO_SIDE - 2);
     let at = ALBEDO_SIDE * ALBEDO_SIDE + y0;
-    // SAFETY: at most ALBEDO_LEN − 1, below the length of the table.
-    let (a, b) = unsafe { (*table.index_unchecked(at), *table.index_unchecked(at + 1)) };
+    let (a, b) = (read(table, at), read(table, at + 1));
     a + (b - a) * (y - y0 as f32)
 }
 

@@ -3,6 +3,7 @@
 use glam::Vec4;
 use spirv_std::arch::IndexUnchecked;
 
+use crate::arithmetic::elements::read;
 use crate::effects::Effects;
 use crate::hit::Hit;
 use crate::precision::{Rung, intersect};
@@ -48,6 +49,26 @@ pub struct MovingSpheres<'a> {
     pub effects: Effects,
 }
 
+impl MovingSpheres<'_> {
+    /// The sphere with this index; for an index beyond them, one of zeros.
+    #[inline]
+    #[must_use]
+    pub fn read(&self, index: usize) -> Sphere {
+        self.moved(read(self.spheres, index), index)
+    }
+
+    /// The sphere with this index, which at time zero is this one, where it is at the time.
+    #[inline]
+    fn moved(&self, sphere: Sphere, index: usize) -> Sphere {
+        if self.effects.any(Effects::MOTION_BLUR) && index < self.velocities.len() {
+            let moved = sphere.center() + self.velocities[index].truncate() * self.time;
+            Sphere::new(moved, sphere.radius())
+        } else {
+            sphere
+        }
+    }
+}
+
 impl Spheres for MovingSpheres<'_> {
     #[inline]
     fn count(&self) -> u32 {
@@ -58,13 +79,7 @@ impl Spheres for MovingSpheres<'_> {
     unsafe fn sphere(&self, index: u32) -> Sphere {
         // SAFETY: the caller's.
         let sphere = unsafe { self.spheres.sphere(index) };
-        let index = index as usize;
-        if self.effects.any(Effects::MOTION_BLUR) && index < self.velocities.len() {
-            let moved = sphere.center() + self.velocities[index].truncate() * self.time;
-            Sphere::new(moved, sphere.radius())
-        } else {
-            sphere
-        }
+        self.moved(sphere, index as usize)
     }
 }
 

@@ -4,11 +4,11 @@ use core::f32::consts::{PI, TAU};
 
 use bytemuck::{Pod, Zeroable};
 use glam::{UVec2, Vec2, Vec3};
-use spirv_std::arch::IndexUnchecked;
 // On the CPU, std has these functions.
 #[cfg(target_arch = "spirv")]
 use spirv_std::num_traits::Float as _;
 
+use crate::arithmetic::elements::read;
 use crate::effects::Effects;
 use crate::microfacet::ALBEDO_LEN;
 
@@ -73,8 +73,8 @@ impl Sky {
         let u = 0.5 + direction.x.atan2(-direction.z) / TAU;
         let v = direction.y.clamp(-1.0, 1.0).acos() / PI;
         UVec2::new(
-            ((u * size.x as f32) as u32).min(size.x - 1),
-            ((v * size.y as f32) as u32).min(size.y - 1),
+            ((u * size.x as f32) as u32).min(size.x.max(1) - 1),
+            ((v * size.y as f32) as u32).min(size.y.max(1) - 1),
         )
     }
 
@@ -88,16 +88,21 @@ impl Sky {
         ALBEDO_LEN + self.environment_size.y as usize
     }
 
+    /// Where a row's columns are, or with the number of rows what follows them. Sizes that no table has wrap, here and below,
+    /// and what is beyond the tables is not read.
     #[inline]
-    fn texel_table(&self) -> usize {
-        self.column_table() + self.environment_size.x as usize * self.environment_size.y as usize
+    fn columns_of(&self, row: u32) -> usize {
+        let before = (row as usize).wrapping_mul(self.environment_size.x as usize);
+        self.column_table().wrapping_add(before)
     }
 
     #[inline]
     fn texel(&self, texel: UVec2, tables: &[f32]) -> Vec3 {
-        let index = texel.y as usize * self.environment_size.x as usize + texel.x as usize;
-        let at = self.texel_table() + 3 * index;
-        if at + 2 < tables.len() {
+        let size = self.environment_size;
+        let row = (texel.y as usize).wrapping_mul(size.x as usize);
+        let channel = row.wrapping_add(texel.x as usize).wrapping_mul(3);
+        let at = self.columns_of(size.y).wrapping_add(channel);
+        if tables.len() > 2 && at < tables.len() - 2 {
             Vec3::new(tables[at], tables[at + 1], tables[at + 2])
         } else {
             Vec3::ZERO
@@ -109,11 +114,11 @@ impl Sky {
     fn density_in(&self, texel: UVec2, tables: &[f32]) -> f32 {
         let size = self.environment_size;
         let row = share(tables, self.row_table(), texel.y);
-        let first = self.column_table() + texel.y as usize * size.x as usize;
-        let column = share(tables, first, texel.x);
+        let column = share(tables, self.columns_of(texel.y), texel.x);
         // The solid angle of the texel.
-        let angle = |row: u32| (PI * row as f32 / size.y as f32).cos();
-        let solid = (angle(texel.y) - angle(texel.y + 1)) * TAU / size.x as f32;
+        let angle = |row: f32| (PI * row / size.y as f32).cos();
+        let y = texel.y as f32;
+        let solid = (angle(y) - angle(y + 1.0)) * TAU / size.x as f32;
         row * column / solid
     }
 
@@ -130,12 +135,12 @@ impl Sky {
     pub fn sample_environment(&self, u: Vec2, tables: &[f32]) -> (Vec3, f32, Vec3) {
         let size = self.environment_size;
         let (row, v) = find(tables, self.row_table(), size.y, u.y);
-        let first = self.column_table() + row as usize * size.x as usize;
-        let (column, h) = find(tables, first, size.x, u.x);
+        let (column, h) = find(tables, self.columns_of(row), size.x, u.x);
         let texel = UVec2::new(column, row);
         // Uniform in the solid angle of the texel.
-        let angle = |row: u32| (PI * row as f32 / size.y as f32).cos();
-        let y = angle(row) + (angle(row + 1) - angle(row)) * v;
+        let angle = |row: f32| (PI * row / size.y as f32).cos();
+        let above = angle(row as f32);
+        let y = above + (angle(row as f32 + 1.0) - above) * v;
         let around = TAU * ((column as f32 + h) / size.x as f32 - 0.5);
         let r = (1.0 - y * y).max(0.0).sqrt();
         let direction = Vec3::new(r * around.sin(), y, -r * around.cos());
@@ -150,27 +155,30 @@ impl Sky {
 /// The probability of entry `index` of a table of cumulative probabilities.
 #[inline]
 fn share(tables: &[f32], first: usize, index: u32) -> f32 {
-    let at = first + index as usize;
+    let at = first.wrapping_add(index as usize);
     if at >= tables.len() {
         return 0.0;
     }
-    let below = if index > 0 { tables[at - 1] } else { 0.0 };
+    let below = if (index > 0) & (at > 0) {
+        tables[at - 1]
+    } else {
+        0.0
+    };
     tables[at] - below
 }
 
 /// The first of `count` entries whose cumulative probability exceeds `u`, and where in it `u` is.
 #[inline]
 fn find(tables: &[f32], first: usize, count: u32, u: f32) -> (u32, f32) {
-    if (count == 0) | (first + count as usize > tables.len()) {
+    let len = tables.len();
+    if (count == 0) | (first > len) || (count as usize > len - first) {
         return (0, 0.0);
     }
     let mut low = 0;
     let mut high = count - 1;
     while low < high {
-        let middle = (low + high) / 2;
-        // SAFETY: below first + count, which is at most the length.
-        let cumulative = unsafe { *tables.index_unchecked(first + middle as usize) };
-        if u < cumulative {
+        let middle = low + (high - low) / 2;
+        if u < read(tables, first + middle as usize) {
             high = middle;
         } else {
             low = middle + 1;

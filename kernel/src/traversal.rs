@@ -3,9 +3,10 @@
 use crate::hit::Hit;
 use crate::nearest::{MovingSpheres, is_occluded, nearest_hit_in};
 use crate::ray::Ray;
-use crate::tree::{Node, is_occluded_in_tree, nearest_hit_in_tree};
+use crate::tree::{Tree, is_occluded_in_tree, nearest_hit_in_tree};
 
-/// Finds what rays hit. A host may have a faster one than the kernel's, with the same answers.
+/// Finds what rays hit. A host may have a faster one than the kernel's, with the same answers. A hit that names no sphere is
+/// one of a sphere of zeros, nowhere.
 pub trait Traversal {
     /// The nearest hit; of two equally near, the one of lower index.
     fn nearest_hit(&self, ray: &Ray, spheres: &MovingSpheres<'_>) -> Hit;
@@ -19,17 +20,17 @@ pub trait Traversal {
 pub struct OneByOne<'a> {
     /// The rung, a value of [`Rung::to_u32`](crate::Rung::to_u32).
     pub rung: u32,
-    /// 1 if the spheres stand in a tree, else every one is tested.
+    /// 1 if the spheres stand in the tree, else every one is tested.
     pub has_tree: u32,
-    /// The nodes of the tree.
-    pub nodes: &'a [Node],
+    /// The tree.
+    pub tree: Tree<'a>,
 }
 
 impl Traversal for OneByOne<'_> {
     #[inline]
     fn nearest_hit(&self, ray: &Ray, spheres: &MovingSpheres<'_>) -> Hit {
         if self.has_tree == 1 {
-            nearest_hit_in_tree(self.rung, ray, self.nodes, spheres)
+            nearest_hit_in_tree(self.rung, ray, self.tree, spheres)
         } else {
             nearest_hit_in(self.rung, ray, spheres, 0, u32::MAX)
         }
@@ -38,7 +39,7 @@ impl Traversal for OneByOne<'_> {
     #[inline]
     fn is_occluded(&self, ray: &Ray, spheres: &MovingSpheres<'_>) -> bool {
         if self.has_tree == 1 {
-            is_occluded_in_tree(self.rung, ray, self.nodes, spheres)
+            is_occluded_in_tree(self.rung, ray, self.tree, spheres)
         } else {
             is_occluded(self.rung, ray, spheres)
         }

@@ -29,7 +29,15 @@
 //!   whose r² is off by that.
 //!
 //! Coordinates are to be below 2⁶⁰.
+//!
+//! # No walk gets lost
+//!
+//! Walks take a [`Tree`], whose nodes are known to be one: each is the child of one other that stands before it, and none
+//! is deeper than there is room for on a stack. What links say of spheres need not fit the spheres that a walk is given: on the CPU
+//! an index beyond them is cut to the last, on a GPU the driver checks it (`robustBufferAccess`).
 
+#[cfg(not(target_arch = "spirv"))]
+use alloc::vec;
 use core::mem::MaybeUninit;
 
 use bytemuck::{Pod, Zeroable};
@@ -82,28 +90,29 @@ impl Node {
     /// What coordinates must stay below, for the walk's numbers to be finite.
     pub const MAX_COORDINATE: f32 = (1_u64 << 60) as f32;
 
-    /// Whether a child is a node.
+    /// Whether a child is a node. Of a child's number, here and below, the lowest three bits count.
     #[inline]
     #[must_use]
     pub fn is_node(&self, child: u32) -> bool {
-        self.corner.w >> (4 * child + 1) & 1 == 1
+        self.corner.w >> (4 * (child & 7) + 1) & 1 == 1
     }
 
     /// Where a child is that is a node.
     #[inline]
     #[must_use]
     pub fn child(&self, child: u32) -> u32 {
-        self.links.x + (self.corner.w & ((1 << (4 * child)) - 1)).count_ones()
+        let before = self.corner.w & ((1 << (4 * (child & 7))) - 1);
+        self.links.x.wrapping_add(before.count_ones())
     }
 
     /// Where a child's spheres begin, and how many it has.
     #[inline]
     #[must_use]
     pub fn leaf(&self, child: u32) -> (u32, u32) {
-        let bits = self.links.z;
-        let before = (bits & ((1 << (4 * child)) - 1)).count_ones();
-        let count = (bits >> (4 * child) & 15).count_ones();
-        (self.links.y + before, count)
+        let (bits, at) = (self.links.z, 4 * (child & 7));
+        let before = (bits & ((1 << at) - 1)).count_ones();
+        let count = (bits >> at & 15).count_ones();
+        (self.links.y.wrapping_add(before), count)
     }
 
     /// Whether any child is a node.
@@ -201,6 +210,102 @@ fn point(bits: UVec4) -> Vec3 {
     )
 }
 
+/// The nodes of a tree, known to be one: the first is an [`Extent`], the second the root, each other is a child of exactly one
+/// node that stands before it, and none is more than [`Node::MAX_DEPTH`] nodes down, the root counted.
+#[derive(Clone, Copy, Debug)]
+pub struct Tree<'a> {
+    nodes: &'a [Node],
+}
+
+impl<'a> Tree<'a> {
+    /// No tree: walks in it find nothing.
+    pub const NONE: Self = Self { nodes: &[] };
+
+    /// Of nodes that are a tree; `None` if they are not. Looks at each.
+    ///
+    /// ```
+    /// use spherule_kernel::tree::{Node, Tree};
+    ///
+    /// assert!(Tree::of(&[]).is_some());
+    /// assert!(Tree::of(&[Node::default(); 2]).is_some());
+    /// // No node names the third.
+    /// assert!(Tree::of(&[Node::default(); 3]).is_none());
+    /// ```
+    #[cfg(not(target_arch = "spirv"))]
+    #[must_use]
+    pub fn of(nodes: &'a [Node]) -> Option<Self> {
+        let is_tree = nodes.is_empty() || is_tree(nodes);
+        is_tree.then_some(Self { nodes })
+    }
+
+    /// Of nodes that are a tree, without a look at them.
+    ///
+    /// # Safety
+    ///
+    /// [`Tree::of`] would take them; on a GPU those that are bound.
+    #[inline]
+    #[must_use]
+    pub const unsafe fn of_unchecked(nodes: &'a [Node]) -> Self {
+        Self { nodes }
+    }
+
+    /// The nodes.
+    #[inline]
+    #[must_use]
+    pub const fn nodes(self) -> &'a [Node] {
+        self.nodes
+    }
+
+    /// Whether there is no tree.
+    #[inline]
+    #[must_use]
+    pub const fn is_none(self) -> bool {
+        self.nodes.len() <= Node::ROOT as usize
+    }
+}
+
+/// Whether nodes, of which there are some, are a tree: level by level each node's children are the next that no other has named.
+#[cfg(not(target_arch = "spirv"))]
+fn is_tree(nodes: &[Node]) -> bool {
+    if nodes.len() <= Node::ROOT as usize {
+        return false;
+    }
+    // Each child is named once: as many are named as there are, and none twice. Nodes stand behind those that name them,
+    // so that depths are known when they are asked for; what is not named is at no depth.
+    const NOWHERE: u8 = u8::MAX;
+    let mut depths = vec![NOWHERE; nodes.len()];
+    depths[Node::ROOT as usize] = 1;
+    for (at, node) in nodes.iter().enumerate().skip(Node::ROOT as usize) {
+        let depth = depths[at];
+        if depth == NOWHERE || usize::from(depth) > Node::MAX_DEPTH {
+            return false;
+        }
+        let children = (node.corner.w & NODES).count_ones() as usize;
+        if node.corner.w & !NODES != 0 {
+            return false;
+        }
+        if children == 0 {
+            continue;
+        }
+        let first = node.links.x as usize;
+        let is_behind = first > at && first < nodes.len() && children <= nodes.len() - first;
+        if !is_behind {
+            return false;
+        }
+        for below in &mut depths[first..first + children] {
+            if *below != NOWHERE {
+                return false;
+            }
+            *below = depth + 1;
+        }
+    }
+    true
+}
+
+/// Bit 4c + 1 of each child c: those of [`Node::corner`] that say which are nodes.
+#[cfg(not(target_arch = "spirv"))]
+const NODES: u32 = 0x2222_2222;
+
 /// 2⁻²⁴.
 const U: f32 = 1.0 / (1 << 24) as f32;
 
@@ -224,17 +329,15 @@ pub struct Slabs {
 }
 
 impl Slabs {
-    /// Of a ray in a tree, which has a first node.
+    /// Of a ray in a tree of this extent.
     #[inline(always)]
     #[must_use]
-    pub fn of(rung: u32, ray: &Ray, nodes: &[Node]) -> Self {
+    pub fn of(rung: u32, ray: &Ray, world: &Extent) -> Self {
         let scale = power_of_two_under(ray.direction);
         // One over it: exponents that add up to those of one.
-        let unit = f32::from_bits(0x7f00_0000 - scale.to_bits());
+        let unit = f32::from_bits(0x7f00_0000_u32.wrapping_sub(scale.to_bits()));
         let d = ray.direction * scale;
         let inverse = Vec3::new(reciprocal(d.x), reciprocal(d.y), reciprocal(d.z));
-        // SAFETY: the callers' trees have a first node.
-        let world = Extent::of_node(unsafe { nodes.index_unchecked(0) });
         let size = world.low.abs().max(world.high.abs())
             + ray.origin.abs()
             + (world.high - world.low) * 2.0;
@@ -387,10 +490,10 @@ fn reciprocal(x: f32) -> f32 {
 pub fn nearest_hit_in_tree<S: Spheres + ?Sized>(
     rung: u32,
     ray: &Ray,
-    nodes: &[Node],
+    tree: Tree<'_>,
     spheres: &S,
 ) -> Hit {
-    walk::<false, S>(rung, ray, nodes, spheres, &mut Work::default())
+    walk::<false, S>(rung, ray, tree, spheres, &mut Work::default())
 }
 
 /// Whether `ray` hits any sphere of a tree.
@@ -399,10 +502,10 @@ pub fn nearest_hit_in_tree<S: Spheres + ?Sized>(
 pub fn is_occluded_in_tree<S: Spheres + ?Sized>(
     rung: u32,
     ray: &Ray,
-    nodes: &[Node],
+    tree: Tree<'_>,
     spheres: &S,
 ) -> bool {
-    walk::<true, S>(rung, ray, nodes, spheres, &mut Work::default()).is_some()
+    walk::<true, S>(rung, ray, tree, spheres, &mut Work::default()).is_some()
 }
 
 /// What a ray took.
@@ -420,14 +523,14 @@ pub fn work_in_tree<S: Spheres + ?Sized>(
     rung: u32,
     any: bool,
     ray: &Ray,
-    nodes: &[Node],
+    tree: Tree<'_>,
     spheres: &S,
 ) -> Work {
     let mut work = Work::default();
     if any {
-        let _ = walk::<true, S>(rung, ray, nodes, spheres, &mut work);
+        let _ = walk::<true, S>(rung, ray, tree, spheres, &mut work);
     } else {
-        let _ = walk::<false, S>(rung, ray, nodes, spheres, &mut work);
+        let _ = walk::<false, S>(rung, ray, tree, spheres, &mut work);
     }
     work
 }
@@ -435,7 +538,8 @@ pub fn work_in_tree<S: Spheres + ?Sized>(
 /// The index of the sphere that has this bit in a node's links.
 #[inline]
 fn sphere_at(links: UVec4, bit: u32, count: u32) -> u32 {
-    within(links.y + (links.z & ((1 << bit) - 1)).count_ones(), count)
+    let before = (links.z & ((1 << bit) - 1)).count_ones();
+    within(links.y.wrapping_add(before), count)
 }
 
 /// [`intersect`] of the rungs that are not lazy.
@@ -461,8 +565,8 @@ fn take_two(bits: u32) -> (u32, u32, u32) {
     (one, two, rest)
 }
 
-/// An index below a length that is not zero. The links of a tree are, but that a slice is one is not known on the CPU.
-/// A GPU's buffers are checked by their driver (`robustBufferAccess`).
+/// An index below a length that is not zero. The spheres need not be those of the tree, and a GPU's buffers are checked by
+/// their driver (`robustBufferAccess`).
 #[inline]
 fn within(index: u32, length: u32) -> u32 {
     if cfg!(target_arch = "spirv") {
@@ -477,15 +581,17 @@ fn within(index: u32, length: u32) -> u32 {
 fn walk<const ANY: bool, S: Spheres + ?Sized>(
     rung: u32,
     ray: &Ray,
-    nodes: &[Node],
+    tree: Tree<'_>,
     spheres: &S,
     work: &mut Work,
 ) -> Hit {
-    let count = spheres.count();
+    let (nodes, count) = (tree.nodes, spheres.count());
     if (nodes.len() <= Node::ROOT as usize) | (count == 0) {
         return Hit::NONE;
     }
-    let slabs = Slabs::of(rung, ray, nodes);
+    // SAFETY: there are more than one.
+    let world = Extent::of_node(unsafe { nodes.index_unchecked(0) });
+    let slabs = Slabs::of(rung, ray, &world);
     let line = Line::of(ray);
     // Rungs that take long are asked about the nearest sphere only, when it is found.
     let is_lazy = rung >= Rung::Compensated.to_u32();
@@ -639,17 +745,14 @@ fn walk<const ANY: bool, S: Spheres + ?Sized>(
         }
     }
 
-    if is_lazy & (low < end) {
-        if !ANY {
-            // SAFETY: `hit_sphere` is below the number of spheres.
-            let sphere = unsafe { spheres.sphere(hit_sphere) };
-            t = intersect(rung, sphere, ray);
-        }
-        Hit {
-            t,
-            sphere: hit_sphere,
-        }
-    } else if t < ray.t_max {
+    let is_unasked = is_lazy & (low < end);
+    if is_unasked & !ANY {
+        // SAFETY: `hit_sphere` is below the number of spheres.
+        let sphere = unsafe { spheres.sphere(hit_sphere) };
+        // No hit after all only where numbers are beyond what bounds are made for.
+        t = intersect(rung, sphere, ray);
+    }
+    if (t < ray.t_max) | (is_unasked & ANY) {
         Hit {
             t,
             sphere: hit_sphere,
@@ -664,3 +767,50 @@ const _: () = {
     assert!(core::mem::offset_of!(Node, corner) == 96);
     assert!(core::mem::offset_of!(Node, links) == 112);
 };
+
+#[cfg(test)]
+mod tests {
+    use alloc::vec::Vec;
+
+    use super::*;
+
+    /// A node whose children from `first` on are nodes, so many.
+    fn inner(first: u32, count: u32) -> Node {
+        let bits = (0..count).fold(0, |bits, child| bits | 2 << (4 * child));
+        Node {
+            corner: UVec4::new(0, 0, 0, bits),
+            links: UVec4::new(first, 0, 0, 0),
+            ..Node::default()
+        }
+    }
+
+    #[test]
+    fn only_trees_are_trees() {
+        let leaf = Node::default();
+        assert!(Tree::of(&[leaf, inner(2, 2), inner(4, 1), leaf, leaf]).is_some());
+        for (what, nodes) in [
+            ("no root", vec![leaf]),
+            ("its own child", vec![leaf, inner(1, 1)]),
+            (
+                "the child of one behind it",
+                vec![leaf, inner(2, 1), inner(1, 1)],
+            ),
+            (
+                "the child of two",
+                vec![leaf, inner(2, 2), inner(4, 1), inner(4, 1), leaf],
+            ),
+            ("beyond the last", vec![leaf, inner(2, 2), leaf]),
+            ("nobody's child", vec![leaf, inner(2, 1), leaf, leaf]),
+            ("far away", vec![leaf, inner(u32::MAX, 8), leaf]),
+            ("the extent", vec![leaf, inner(0, 1)]),
+        ] {
+            assert!(Tree::of(&nodes).is_none(), "{what}");
+        }
+        let chain = |length: usize| -> Vec<Node> {
+            let inner = (2..=length as u32).map(|next| inner(next, 1));
+            [leaf].into_iter().chain(inner).chain([leaf]).collect()
+        };
+        assert!(Tree::of(&chain(Node::MAX_DEPTH)).is_some());
+        assert!(Tree::of(&chain(Node::MAX_DEPTH + 1)).is_none());
+    }
+}

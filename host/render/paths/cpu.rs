@@ -48,7 +48,7 @@ pub fn render(
 ) -> Result<(Vec<Accumulator>, Timings, Reached)> {
     let trace = trace_for(prepared.compiled, settings.rung);
     let size = prepared.launch.image_size;
-    let levels = Levels::of(&prepared.nodes);
+    let levels = Levels::of(prepared.nodes.tree());
     let mut accumulators = film::allocate::<Accumulator>(size.x, size.y)?;
     let started = Instant::now();
     let deadline = settings.time_limit.map(|limit| started + limit);
@@ -126,7 +126,7 @@ fn trace<const EFFECTS: u32, const RUNG: u32>(
             .within(called),
         rung: RUNG,
         launch,
-        traversal: Single::new(rung, &prepared.nodes, levels),
+        traversal: Single::new(rung, prepared.nodes.tree(), levels),
         spheres: &world.spheres,
         velocities: &prepared.velocities,
         material_ids: &world.material_ids,

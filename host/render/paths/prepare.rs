@@ -7,14 +7,13 @@ use spherule_kernel::fog::Fog;
 use spherule_kernel::integrate::luminance;
 use spherule_kernel::microfacet::{ALBEDO_LEN, Albedo};
 use spherule_kernel::sky::Sky;
-use spherule_kernel::tree::Node;
 use spherule_kernel::{Effects, Light, Material, PathLaunch};
 
 use super::EffectChoice;
 use crate::error::Result;
 use crate::render::whole_image;
 use crate::scene::surroundings::EnvironmentImage;
-use crate::scene::tree::{self, Acceleration};
+use crate::scene::tree::{self, Acceleration, Nodes};
 use crate::scene::{Scene, World};
 
 /// What the kernel is told of a scene, besides its world.
@@ -23,7 +22,7 @@ pub struct Prepared {
     /// The world, in the order of the tree's leaves if there is a tree.
     pub world: World,
     /// The nodes of the tree; empty if there is none.
-    pub nodes: Vec<Node>,
+    pub nodes: Nodes,
     /// The launch that covers the whole image and no samples yet.
     pub launch: PathLaunch,
     /// For each sphere, how it moves; empty if none does.
@@ -65,7 +64,7 @@ impl Prepared {
             acceleration.min_spheres(tree::MIN_SPHERES),
         ) {
             Some(tree) => (tree.sort_world(&scene.world), tree.nodes),
-            None => (scene.world.clone(), Vec::new()),
+            None => (scene.world.clone(), Nodes::default()),
         };
         let (lights, mut sky, sphere_light_probability) = lights(scene, &world);
         if let Some(image) = scene.sky.as_ref().and_then(|sky| sky.image.as_ref()) {

@@ -1,7 +1,8 @@
-//! Elements of small arrays, by indices that no compiler sees through, without a panic. Runs on the GPU and on the CPU.
+//! Elements of arrays and slices, by indices that no compiler sees through, without a panic. Runs on the GPU and on the CPU.
 //!
 //! What might panic leaves its mark on all of a kernel: the thread gives up there, and every loop around it asks whether it has.
 
+use bytemuck::Zeroable;
 use spirv_std::arch::IndexUnchecked;
 
 /// An element; the last for an index beyond it.
@@ -17,4 +18,15 @@ pub fn get<T: Copy, const N: usize>(array: &[T; N], index: usize) -> T {
 pub fn set<T, const N: usize>(array: &mut [T; N], index: usize, value: T) {
     // SAFETY: below N.
     unsafe { *array.index_unchecked_mut(index.min(N - 1)) = value };
+}
+
+/// An element of a slice, which a launch binds; for an index beyond it, zeros: a GPU's driver sees to that (`robustBufferAccess`).
+#[inline]
+#[must_use]
+pub fn read<T: Zeroable + Copy>(slice: &[T], index: usize) -> T {
+    #[cfg(target_arch = "spirv")]
+    // SAFETY: what is beyond a buffer the driver does not read.
+    return unsafe { *slice.index_unchecked(index) };
+    #[cfg(not(target_arch = "spirv"))]
+    slice.get(index).copied().unwrap_or(T::zeroed())
 }
