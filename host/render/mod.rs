@@ -114,8 +114,7 @@ pub struct Timings {
 ///
 /// # Errors
 ///
-/// [`Error::Scene`] if the scene's view is degenerate or its world inconsistent, and the device's
-/// errors.
+/// [`Error::Scene`] as [`Scene::validate`] has it, and the device's errors.
 pub fn render(
     scene: &Scene,
     settings: impl Into<Settings>,
@@ -172,34 +171,9 @@ pub fn render(
 ///
 /// # Errors
 ///
-/// [`Error::Scene`] if the scene's view is degenerate or its world inconsistent.
+/// [`Error::Scene`] as [`Scene::validate`] has it.
 pub fn whole_image(scene: &Scene) -> Result<Launch> {
-    let world = &scene.world;
-    if let Some(id) = world
-        .material_ids
-        .iter()
-        .find(|id| **id as usize >= world.materials.len())
-    {
-        return Err(Error::Scene(SceneError::without_place(
-            "",
-            format!(
-                "a sphere has the material {id}, and the world has {} materials",
-                world.materials.len()
-            ),
-            "add the material first; World::add_material returns its index",
-        )));
-    }
-    if world.spheres.len() != world.material_ids.len() {
-        return Err(Error::Scene(SceneError::without_place(
-            "",
-            format!(
-                "the world has {} spheres and {} material indices",
-                world.spheres.len(),
-                world.material_ids.len()
-            ),
-            "give each sphere the index of its material; World::add keeps the two in step",
-        )));
-    }
+    scene.validate()?;
     let size = glam::UVec2::new(scene.width, scene.height);
     Ok(Launch {
         camera: camera(scene)?,

@@ -9,6 +9,7 @@
 //! | [`mod@effects`] | which effects a scene calls for, and by what |
 //! | [`toml_file`] | scenes written by a person |
 //! | [`tree`] | boxes around the spheres of a world |
+//! | `validate` | whether a scene can be rendered |
 //! | [`molecule`] | molecules from PDB and XYZ files |
 //! | [`environment`] | images of the surroundings |
 //! | `text` | text files of any size |
@@ -21,6 +22,7 @@ pub mod surroundings;
 mod text;
 pub mod toml_file;
 pub mod tree;
+mod validate;
 pub mod view;
 pub mod world;
 
