@@ -23,36 +23,15 @@ const _: () = assert!(MAX_BOXES <= 1 << Levels::INDEX_BITS);
 #[derive(Clone, Debug)]
 pub struct Levels {
     /// From the top down; there is one at least.
-    pub(super) levels: Vec<Level>,
+    pub(super) groups: Vec<Vec<Group>>,
     /// Of each box at the bottom the first sphere, and how many there are.
     pub(super) spheres: Vec<(u32, u32)>,
     /// How many spheres there are in all boxes.
     pub(super) sphere_count: usize,
 }
 
-/// The boxes of one level.
-#[derive(Clone, Debug)]
-pub(super) struct Level {
-    pub(super) groups: Vec<Group>,
-    /// For each group, a bit for each box that there is: numbers that are none meet what is none, too.
-    pub(super) there: Vec<u16>,
-}
-
-impl Level {
-    fn of(boxes: &[Bottom]) -> Self {
-        let there = |some: &[Bottom]| u16::MAX >> (WIDTH - some.len());
-        Self {
-            groups: boxes.chunks(WIDTH).map(Group::of).collect(),
-            there: boxes.chunks(WIDTH).map(there).collect(),
-        }
-    }
-
-    fn bytes(&self) -> usize {
-        size_of_val(&self.groups[..]) + size_of_val(&self.there[..])
-    }
-}
-
-/// The sides of sixteen boxes: the smallest x, y, z, then the largest. A box that is none is empty.
+/// The sides of sixteen boxes: the smallest x, y, z, then the largest. A box that is none ends before it begins, so that no ray
+/// whose numbers are not beyond [`is_plain`](super::sixteen::is_plain) meets it.
 #[derive(Clone, Debug)]
 #[repr(align(64))]
 pub(super) struct Group(pub(super) [[f32; WIDTH]; 6]);
@@ -80,14 +59,14 @@ impl Levels {
         let spheres: Vec<_> = boxes.iter().map(|of| of.spheres).collect();
         let end_of = |(first, count): &(u32, u32)| *first as usize + *count as usize;
         let sphere_count = spheres.iter().map(end_of).max()?;
-        let mut levels = vec![Level::of(&boxes)];
+        let mut levels = vec![groups(&boxes)];
         while boxes.len() > WIDTH * MAX_TOP {
             boxes = boxes.chunks(WIDTH).map(around).collect();
-            levels.push(Level::of(&boxes));
+            levels.push(groups(&boxes));
         }
         levels.reverse();
         Some(Self {
-            levels,
+            groups: levels,
             spheres,
             sphere_count,
         })
@@ -96,8 +75,8 @@ impl Levels {
     /// The memory that they take, in bytes.
     #[must_use]
     pub fn bytes(&self) -> usize {
-        let levels = self.levels.iter().map(Level::bytes);
-        levels.sum::<usize>() + size_of_val(&self.spheres[..])
+        let groups = self.groups.iter().map(|groups| size_of_val(&groups[..]));
+        groups.sum::<usize>() + size_of_val(&self.spheres[..])
     }
 }
 
@@ -115,20 +94,20 @@ struct Bottom {
     spheres: (u32, u32),
 }
 
-impl Group {
-    /// Of sixteen boxes at most.
-    fn of(boxes: &[Bottom]) -> Self {
+fn groups(boxes: &[Bottom]) -> Vec<Group> {
+    let group = |some: &[Bottom]| {
         let beyond = Node::MAX_COORDINATE;
         let none = |side| [if side < 3 { beyond } else { -beyond }; WIDTH];
         let mut sides = [0, 1, 2, 3, 4, 5].map(none);
-        for (lane, of) in boxes.iter().take(WIDTH).enumerate() {
+        for (lane, of) in some.iter().enumerate() {
             for axis in 0..3 {
                 sides[axis][lane] = of.low[axis];
                 sides[3 + axis][lane] = of.high[axis];
             }
         }
-        Self(sides)
-    }
+        Group(sides)
+    };
+    boxes.chunks(WIDTH).map(group).collect()
 }
 
 /// What is around boxes.

@@ -87,7 +87,7 @@ impl<'a> Single<'a> {
     ) {
         #[cfg(target_arch = "x86_64")]
         if let (Some((wide, levels)), Some(spheres)) = (self.levels, spheres.at_rest())
-            && (self.rung == Rung::Robust || levels.levels.len() <= 2)
+            && (self.rung == Rung::Robust || levels.groups.len() <= 2)
             && levels.sphere_count <= spheres.len()
         {
             // SAFETY: the machine has AVX-512, as the proof says.
@@ -116,7 +116,7 @@ impl<'a> Single<'a> {
         }
         #[cfg(target_arch = "x86_64")]
         if let (Some((wide, levels)), Some(spheres)) = (self.levels, spheres.at_rest())
-            && levels.levels.len() <= 2
+            && levels.groups.len() <= 2
             && levels.sphere_count <= spheres.len()
         {
             // SAFETY: the machine has AVX-512, as the proof says.

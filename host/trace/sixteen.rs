@@ -4,7 +4,7 @@ use std::arch::x86_64::*;
 
 use glam::Vec3;
 use spherule_kernel::bounds::Line;
-use spherule_kernel::tree::{Extent, Slabs};
+use spherule_kernel::tree::{Extent, Node, Slabs};
 use spherule_kernel::{Hit, Ray, Rung, Sphere};
 
 use super::avx512::{self, LANES};
@@ -47,6 +47,8 @@ pub(super) struct Sixteen {
     squared: Lanes<f32>,
     inverse_squared: Lanes<f32>,
     slabs: ManySlabs,
+    /// 1 for those that [`is_plain`] says are.
+    are_plain: [u32; LANES],
     /// [`Line::direction`] and [`Line::a`].
     scaled: [Lanes<f32>; 3],
     scaled_squared: Lanes<f32>,
@@ -91,10 +93,27 @@ pub(super) fn end_of(slabs: &Slabs, t: f32) -> f32 {
     Slabs::widened_end(t * slabs.unit - slabs.start).max(0.0)
 }
 
+/// Whether a ray's numbers are such that it does not meet a box from 2⁶⁰ to −2⁶⁰ along each axis. Its inverse direction i is
+/// at least 1/2 then, and where it enters such a box is behind where it leaves it by 2 · 2⁶⁰ i, less twice what planes are moved by,
+/// which is below 2⁵⁵ i + 2⁴⁰. Numbers that are none are not plain.
+#[inline(always)]
+pub(super) fn is_plain(ray: &Ray, start: f32) -> bool {
+    let [x, y, z] = ray.origin.abs().to_array();
+    let [dx, dy, dz] = ray.direction.abs().to_array();
+    (x < Node::MAX_COORDINATE)
+        & (y < Node::MAX_COORDINATE)
+        & (z < Node::MAX_COORDINATE)
+        & (dx <= f32::MAX)
+        & (dy <= f32::MAX)
+        & (dz <= f32::MAX)
+        & (start.abs() < Node::MAX_COORDINATE)
+}
+
 impl Sixteen {
-    /// Takes the rays of a slice, sixteen at most.
+    /// Takes the rays of a slice, sixteen at most. Returns whether all are plain; if not, they are not to be asked about.
+    #[must_use]
     #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
-    pub(super) fn take(&mut self, rung: Rung, rays: &[Ray], world: &Extent) {
+    pub(super) fn take(&mut self, rung: Rung, rays: &[Ray], world: &Extent) -> bool {
         for (i, ray) in rays.iter().take(LANES).enumerate() {
             for axis in 0..3 {
                 self.origin[axis].0[i] = ray.origin[axis];
@@ -109,6 +128,9 @@ impl Sixteen {
             // Boxes need not be wider for the others.
             _ => self.ready::<{ Rung::Certified.to_u32() }>(world),
         }
+        self.are_plain[..rays.len().min(LANES)]
+            .iter()
+            .all(|is| *is == 1)
     }
 
     /// Loops over arrays become vector instructions.
@@ -129,6 +151,7 @@ impl Sixteen {
             self.inverse_squared.0[i] = 1.0 / a;
             let slabs = Slabs::of(RUNG, &ray, world);
             self.slabs.end.0[i] = end_of(&slabs, ray.end());
+            self.are_plain[i] = u32::from(is_plain(&ray, slabs.start));
             let line = Line::of(&ray);
             self.scaled_squared.0[i] = line.a;
             let put = |of: &mut [Lanes<f32>; 3], v: Vec3| {

@@ -14,9 +14,9 @@ use spherule_kernel::tree::Slabs;
 use spherule_kernel::{Hit, Ray, Rung, Sphere};
 
 use super::avx512::{Avx512, LANES};
-use super::levels::{Group, Level, Levels};
+use super::levels::{Group, Levels};
 use super::single::Single;
-use super::sixteen::{Planes, Sixteen, end_of};
+use super::sixteen::{Planes, Sixteen, end_of, is_plain};
 use super::walk::{self, Features};
 
 /// The most boxes that sixteen rays may meet.
@@ -53,7 +53,7 @@ const fn of_pair(pair: u32) -> (usize, usize) {
     ((pair >> Levels::INDEX_BITS) as usize, index as usize)
 }
 
-/// What each ray hits; `put` is told the ray's index.
+/// What each ray hits; `put` is told the ray's index. There are at least as many spheres as levels name.
 #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
 pub(super) fn trace<const ANY: bool>(
     wide: Avx512,
@@ -64,12 +64,16 @@ pub(super) fn trace<const ANY: bool>(
     mut put: impl FnMut(usize, Hit),
 ) {
     let mut room = ROOM.take();
-    let Some((top, below)) = levels.levels.split_first() else {
+    let Some((top, below)) = levels.groups.split_first() else {
         return;
     };
     for (some, rays) in rays.chunks(LANES).enumerate() {
         let mut put = |index: usize, hit: Hit| put(LANES * some + index, hit);
-        room.sixteen.take(single.rung, rays, &single.extent);
+        let are_plain = room.sixteen.take(single.rung, rays, &single.extent);
+        if !are_plain {
+            walk::trace::<ANY, _>(Features::Avx512(wide), single, rays, spheres, put);
+            continue;
+        }
         room.begin(top, rays.len());
         for level in below {
             room.descend(level);
@@ -96,7 +100,7 @@ pub(super) fn trace<const ANY: bool>(
     ROOM.set(room);
 }
 
-/// What one ray hits, in a world of two levels at most.
+/// What one ray hits, in a world of two levels at most. There are at least as many spheres as levels name.
 ///
 /// Alone a ray goes through boxes from the nearest on, and leaves out those behind what it has found.
 #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
@@ -110,13 +114,15 @@ pub(super) fn trace_one<const ANY: bool>(
     /// A key's bits that say which box.
     const INDEX: i32 = MOST_ALONE as i32 - 1;
     let slabs = Slabs::of(single.rung.to_u32(), ray, &single.extent);
+    if !is_plain(ray, slabs.start) {
+        return walk::trace_one::<ANY, _>(Features::Avx512(wide), single, ray, spheres);
+    }
     let planes = Planes::of(&slabs, ray.end());
     // Where a box is entered, as a float's bits, whose lowest say which box.
     let mut keys = [const { MaybeUninit::<i32>::uninit() }; MOST_ALONE + LANES];
     let mut count = 0;
-    let mut enter = |level: &Level, index: usize| {
-        let (is_met, enters) = level.meets(index, &planes);
-        let first = LANES * index;
+    let mut enter = |group: &Group, first: usize| {
+        let (is_met, enters) = group.meets(&planes);
         // (enters & !INDEX) | index
         let found = _mm512_ternarylogic_epi32::<0b1101_1000>(
             _mm512_castps_si512(enters),
@@ -130,18 +136,18 @@ pub(super) fn trace_one<const ANY: bool>(
         }
         count += is_met.count_ones() as usize;
     };
-    if let [top, bottom] = &levels.levels[..] {
-        for at in 0..top.groups.len() {
-            let (mut met, _) = top.meets(at, &planes);
+    if let [top, bottom] = &levels.groups[..] {
+        for (at, group) in top.iter().enumerate() {
+            let (mut met, _) = group.meets(&planes);
             while met != 0 {
                 let index = LANES * at + met.trailing_zeros() as usize;
                 met &= met - 1;
-                enter(bottom, index);
+                enter(&bottom[index], LANES * index);
             }
         }
     } else {
-        for index in 0..levels.levels[0].groups.len() {
-            enter(&levels.levels[0], index);
+        for (index, group) in levels.groups[0].iter().enumerate() {
+            enter(group, LANES * index);
         }
     }
     // SAFETY: as many were written.
@@ -172,11 +178,11 @@ impl Room {
     /// Finds the boxes on top that rays meet.
     #[inline]
     #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
-    fn begin(&mut self, top: &Level, count: usize) {
-        let mut pairs = Writer::new(&mut self.pairs, LANES * top.groups.len() * count);
+    fn begin(&mut self, top: &[Group], count: usize) {
+        let mut pairs = Writer::new(&mut self.pairs, LANES * top.len() * count);
         for ray in 0..count {
-            for index in 0..top.groups.len() {
-                let (is_met, _) = top.meets(index, &self.sixteen.planes(ray));
+            for (index, group) in top.iter().enumerate() {
+                let (is_met, _) = group.meets(&self.sixteen.planes(ray));
                 let first = _mm512_set1_epi32(pair(ray, LANES * index).cast_signed());
                 // SAFETY: sixteen of each group at most.
                 unsafe { pairs.push(is_met, _mm512_or_epi32(first, lanes())) };
@@ -188,12 +194,14 @@ impl Room {
     /// Finds the boxes of a level that rays meet in the groups that they are paired with.
     #[inline]
     #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
-    fn descend(&mut self, level: &Level) {
+    fn descend(&mut self, level: &[Group]) {
         let mut below = Writer::new(&mut self.below, LANES * self.pairs.len());
         for met in &self.pairs {
             let (ray, index) = of_pair(*met);
-            // A group of those on top, or that of a box that there is on the level above: each has one here.
-            let (is_met, _) = level.meets(index, &self.sixteen.planes(ray));
+            // SAFETY: a group of those on top, or that of a box of the level above, which each have one here; boxes that are
+            // none were not met.
+            let group = unsafe { level.get_unchecked(index) };
+            let (is_met, _) = group.meets(&self.sixteen.planes(ray));
             let first = _mm512_set1_epi32(pair(ray, LANES * index).cast_signed());
             // SAFETY: sixteen of each pair at most.
             unsafe { below.push(is_met, _mm512_or_epi32(first, lanes())) };
@@ -214,7 +222,7 @@ impl Room {
             let mut indices = Writer::new(&mut self.spheres, WAITING);
             for met in some {
                 let (ray, index) = of_pair(*met);
-                // SAFETY: a box that there is at the bottom, and there are spheres for all boxes, as `Single` asks.
+                // SAFETY: a box at the bottom, and there are spheres for all boxes.
                 let (first, some) = unsafe {
                     let (first, count) = *levels.spheres.get_unchecked(index);
                     let end = first as usize + count as usize;
@@ -302,18 +310,8 @@ fn joined(upper: __m512i, lower: __m512i) -> (__m512i, __m512i) {
     )
 }
 
-impl Level {
-    /// Which boxes of a group a ray meets, a bit each, and where it enters them.
-    #[inline]
-    #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
-    fn meets(&self, index: usize, planes: &Planes) -> (__mmask16, __m512) {
-        let (is_met, enters) = self.groups[index].meets(planes);
-        (is_met & self.there[index], enters)
-    }
-}
-
 impl Group {
-    /// Which boxes a ray meets, a bit each, and where it enters them. Of a ray with numbers that are none it may be any.
+    /// Which boxes a ray meets, a bit each, and where it enters them.
     #[inline]
     #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
     fn meets(&self, planes: &Planes) -> (__mmask16, __m512) {
