@@ -229,7 +229,7 @@ impl Item {
 }
 
 /// Grows a tree over spheres that move while the shutter is open; those beyond the end of `velocities` are
-/// at rest. Without one where there are fewer than `min_spheres`, where a number is not finite or beyond
+/// at rest. Without one where there are none or fewer than `min_spheres`, where a number is not finite or beyond
 /// [`Node::MAX_COORDINATE`], or where there are more spheres than nodes can name.
 #[must_use]
 pub fn grow(
@@ -239,7 +239,7 @@ pub fn grow(
     min_spheres: usize,
 ) -> Option<Tree> {
     let count = spheres.len();
-    if !(min_spheres..=Node::MAX_SPHERES as usize).contains(&count) {
+    if !(min_spheres.max(1)..=Node::MAX_SPHERES as usize).contains(&count) {
         return None;
     }
     let still = Vec3::ZERO;
@@ -1128,6 +1128,11 @@ mod tests {
     fn a_level_more_costs_little() {
         let (full, loose) = (work_of(120_000), work_of(200_000));
         assert!(loose < 1.08 * full, "{full} and {loose}");
+    }
+
+    #[test]
+    fn no_spheres_get_no_tree() {
+        assert!(grow_still(&[], 0).is_none());
     }
 
     #[test]
