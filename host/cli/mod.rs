@@ -104,7 +104,7 @@ fn quiet_mesa() {
 /// instead.
 fn set_panic_hook() {
     std::panic::set_hook(Box::new(|panic| {
-        if !crate::device::is_waiting() {
+        if !crate::device::is_waiting() && !crate::scene::environment::is_decoding() {
             let _ = writeln!(
                 std::io::stderr(),
                 "spherule: internal error, please report it: {panic}"
