@@ -85,7 +85,8 @@ pub struct Tree {
     /// The nodes.
     pub nodes: Nodes,
     /// The spheres in the order of the leaves, by their indices. The nodes name them by their places
-    /// in here.
+    /// in here. Of many equal spheres in one place the first alone is among them: no ray finds
+    /// another.
     pub order: Vec<u32>,
 }
 
@@ -293,10 +294,18 @@ pub fn grow(
         middles,
         weights: Vec3::ONE,
     };
-    let branch = Branch::grow(whole, 0);
+    let given = Given {
+        spheres,
+        velocities: if shutter == (0.0, 0.0) {
+            &[]
+        } else {
+            velocities
+        },
+    };
+    let branch = Branch::grow(whole, 0, given);
     let above = Node::ROOT as usize + 1;
     let mut nodes = bytemuck::zeroed_vec::<Node>(above + branch.count_nodes());
-    let mut order = bytemuck::zeroed_vec::<u32>(count);
+    let mut order = bytemuck::zeroed_vec::<u32>(branch.count_spheres());
     let (top, below) = nodes.split_at_mut(above);
     top[0] = extent.to_node();
     branch.put(
@@ -338,8 +347,61 @@ struct Part<'a> {
     weights: Vec3,
 }
 
+/// What a tree is grown over.
+#[derive(Clone, Copy)]
+struct Given<'a> {
+    spheres: &'a [Sphere],
+    /// Empty where nothing moves.
+    velocities: &'a [Vec3],
+}
+
+impl Given<'_> {
+    /// What equal spheres have in common, bit for bit.
+    fn key(&self, index: u32) -> [u32; 7] {
+        let sphere = &self.spheres[index as usize];
+        let velocity = self.velocities.get(index as usize).copied();
+        let [x, y, z] = sphere.center().to_array().map(f32::to_bits);
+        let [u, v, w] = velocity.unwrap_or_default().to_array().map(f32::to_bits);
+        [x, y, z, sphere.radius().to_bits(), u, v, w]
+    }
+}
+
+impl<'a> Part<'a> {
+    /// Whether all middles are the same, so that no plane tells the items apart.
+    fn is_in_one_place(&self) -> bool {
+        (self.middles.high - self.middles.low).truncate() == Vec3::ZERO
+    }
+
+    /// Of equal spheres the one with the lowest index, the rest left out: wherever a ray meets the
+    /// others it meets that one, too, and of equal hits the lowest index is kept. Boxes stay as they
+    /// are. Done only where the middles are in one place, which costs ordinary worlds nothing.
+    fn without_copies(self, given: Given<'_>) -> Self {
+        if !self.is_in_one_place() {
+            return self;
+        }
+        let by_key = |a: &Item, b: &Item| {
+            let order = given.key(a.index()).cmp(&given.key(b.index()));
+            order.then(a.index().cmp(&b.index()))
+        };
+        self.items.par_sort_unstable_by(by_key);
+        let mut kept = 1;
+        for at in 1..self.items.len() {
+            if given.key(self.items[at].index()) != given.key(self.items[kept - 1].index()) {
+                self.items[kept] = self.items[at];
+                kept += 1;
+            }
+        }
+        let room = self.scratch.len().min(kept);
+        Self {
+            items: &mut self.items[..kept],
+            scratch: &mut self.scratch[..room],
+            ..self
+        }
+    }
+}
+
 impl Branch {
-    fn grow(part: Part<'_>, depth: usize) -> Self {
+    fn grow(part: Part<'_>, depth: usize, given: Given<'_>) -> Self {
         let mut branch = Self {
             node: Node::default(),
             nodes: Vec::new(),
@@ -350,14 +412,15 @@ impl Branch {
         if count < GRAIN {
             branch.nodes.reserve(count / 8);
             branch.order.reserve(count);
-            branch.node = grow_alone(part, depth, &mut branch.nodes, &mut branch.order);
+            branch.node = grow_alone(part, depth, given, &mut branch.nodes, &mut branch.order);
             return branch;
         }
+        let part = part.without_copies(given);
         let (node, inner) = make_node(part, depth, 0, &mut branch.order);
         branch.node = node;
         branch.branches = inner
             .into_par_iter()
-            .map(|part| Self::grow(part, depth + 1))
+            .map(|part| Self::grow(part, depth + 1, given))
             .collect();
         branch
     }
@@ -415,12 +478,19 @@ impl Branch {
 }
 
 /// The node over these items; what is below it goes to the ends of `nodes` and `order`.
-fn grow_alone(part: Part<'_>, depth: usize, nodes: &mut Vec<Node>, order: &mut Vec<u32>) -> Node {
+fn grow_alone(
+    part: Part<'_>,
+    depth: usize,
+    given: Given<'_>,
+    nodes: &mut Vec<Node>,
+    order: &mut Vec<u32>,
+) -> Node {
     let first = nodes.len();
+    let part = part.without_copies(given);
     let (node, inner) = make_node(part, depth, first as u32, order);
     nodes.resize(first + inner.len(), Node::default());
     for (index, part) in inner.into_iter().enumerate() {
-        let child = grow_alone(part, depth + 1, nodes, order);
+        let child = grow_alone(part, depth + 1, given, nodes, order);
         nodes[first + index] = child;
     }
     node
@@ -440,14 +510,17 @@ fn make_node<'a>(
         share_out(whole.items, Node::WIDTH, Vec3::ONE, &mut parts);
     } else {
         let limit = child_size(whole.items.len());
+        let in_one_place = whole.is_in_one_place();
         parts.push(Part {
             weights: Vec3::ONE,
             ..whole
         });
         while parts.len() < Node::WIDTH {
             // The largest of those that are too large for a lower node, and at last none is.
+            // One whose middles are in one place is left whole: it may be copies of one sphere.
             let widest = (0..parts.len())
                 .filter(|part| parts[*part].items.len() > limit)
+                .filter(|part| in_one_place || !parts[*part].is_in_one_place())
                 .max_by(|a, b| parts[*a].bounds.area().total_cmp(&parts[*b].bounds.area()));
             let Some(widest) = widest else { break };
             let part = parts.swap_remove(widest);
@@ -591,6 +664,8 @@ fn split(part: Part<'_>, depth: usize) -> (Part<'_>, Part<'_>) {
     let axis = widest_axis(items, weights);
     items.select_nth_unstable_by(middle, |a, b| {
         let order = a.middle()[axis].total_cmp(&b.middle()[axis]);
+        // Of spheres around one middle, the smaller together.
+        let order = order.then(a.high[axis].total_cmp(&b.high[axis]));
         order.then(a.index().cmp(&b.index()))
     });
     let (left, right) = items.split_at(middle);
@@ -900,6 +975,7 @@ mod tests {
     use spherule_kernel::nearest::nearest_hit_in;
     use spherule_kernel::tree::{is_occluded_in_tree, nearest_hit_in_tree, work_in_tree};
     use spherule_kernel::{Hit, Ray, Rung};
+    use std::collections::HashSet;
 
     struct Grown {
         world: World,
@@ -940,6 +1016,16 @@ mod tests {
             (
                 "coincident",
                 make(&mut |r| Sphere::new((r.vec3(-2.0, 2.0)).round(), 0.5)),
+            ),
+            (
+                "many in one place",
+                make(&mut |r| {
+                    if r.within(0.0, 1.0) < 0.8 {
+                        Sphere::new(Vec3::X, 0.5)
+                    } else {
+                        Sphere::new(r.vec3(-2.0, 2.0), 0.2)
+                    }
+                }),
             ),
             (
                 "concentric",
@@ -1089,12 +1175,21 @@ mod tests {
     fn every_sphere_is_in_one_leaf_and_inside_of_its_boxes() {
         for (name, world) in worlds() {
             let grown = Grown::over(&world);
-            let mut seen = vec![false; world.spheres.len()];
+            let mut seen = vec![false; grown.order.len()];
             let mut nodes = 1;
             let root = Node::ROOT as usize;
             let _ = visit(&grown, root, 0, &mut seen, &mut nodes);
             assert!(seen.iter().all(|seen| *seen), "{name}");
             assert_eq!(nodes, grown.nodes.len(), "{name}");
+            // What is left out is a copy of one that is not, with a higher index.
+            let kept: HashSet<u32> = grown.order.iter().copied().collect();
+            for (index, sphere) in world.spheres.iter().enumerate() {
+                let first = world.spheres.iter().position(|other| other == sphere);
+                assert!(
+                    kept.contains(&(index as u32)) || first < Some(index),
+                    "{name}"
+                );
+            }
             for (sphere, of) in grown.world.spheres.iter().zip(&grown.order) {
                 assert_eq!(*sphere, world.spheres[*of as usize]);
             }
@@ -1128,6 +1223,37 @@ mod tests {
     fn a_level_more_costs_little() {
         let (full, loose) = (work_of(120_000), work_of(200_000));
         assert!(loose < 1.08 * full, "{full} and {loose}");
+    }
+
+    /// Many equal spheres cost a ray no more than one does, wherever else there are some; moving ones
+    /// are equal only if they move alike.
+    #[test]
+    fn of_equal_spheres_the_first_is_kept() {
+        let mut random = Random::new(8);
+        let copy = Sphere::new(Vec3::new(0.5, 0.25, -3.0), 0.125);
+        let mut spheres = vec![copy; 1000];
+        assert_eq!(grow_still(&spheres, 1).expect("a tree").order, [0]);
+        spheres.splice(
+            300..300,
+            (0..500).map(|_| Sphere::new(random.vec3(-4.0, 4.0), 0.2)),
+        );
+        let shells = (0..500).map(|shell| Sphere::new(copy.center(), 0.2 + 1e-3 * shell as f32));
+        spheres.extend(shells);
+        let tree = grow_still(&spheres, 1).expect("a tree");
+        let copies = tree
+            .order
+            .iter()
+            .filter(|index| spheres[**index as usize] == copy);
+        assert_eq!(copies.copied().collect::<Vec<u32>>(), [0]);
+        assert_eq!(tree.order.len(), 1001);
+
+        let mut velocities = vec![Vec3::ZERO; 1000];
+        velocities[300..600].fill(Vec3::X);
+        velocities[600..].fill(Vec3::Y);
+        let moving = grow(&[copy; 1000], &velocities, (-1.0, 1.0), 1);
+        let mut order = moving.expect("a tree").order;
+        order.sort_unstable();
+        assert_eq!(order, [0, 300, 600]);
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! [`Prepared`]: what the kernel is told of a scene.
 
+use std::collections::HashSet;
 use std::f32::consts::PI;
 
 use glam::{DVec3, Vec3, Vec4};
@@ -127,9 +128,16 @@ fn lights(scene: &Scene, world: &World) -> (Vec<Light>, Sky, f32) {
         local.push((Light::point(light.position, light.intensity), power.into()));
     }
     if world.materials.iter().any(|m| m.kind == Material::EMISSIVE) {
+        let mut seen = HashSet::new();
         for (index, (sphere, id)) in world.spheres.iter().zip(&world.material_ids).enumerate() {
             let material = world.materials[*id as usize];
-            if material.kind == Material::EMISSIVE {
+            // Of equal spheres one is seen, and shines.
+            let velocity = world.velocities.get(index).copied().unwrap_or_default();
+            let key = (sphere.center(), sphere.radius(), velocity);
+            let key = bytemuck::cast::<_, [u32; 7]>([
+                key.0.x, key.0.y, key.0.z, key.1, key.2.x, key.2.y, key.2.z,
+            ]);
+            if material.kind == Material::EMISSIVE && seen.insert(key) {
                 let r = f64::from(sphere.radius());
                 let power =
                     4.0 * f64::from(PI * PI) * f64::from(luminance(material.volume)) * r * r;
@@ -250,4 +258,32 @@ fn environment(image: &EnvironmentImage, tables: &mut Vec<f32>) {
     tables.extend(rows.iter().map(|sum| (sum / total) as f32));
     tables.extend(columns);
     tables.extend(image.texels.iter().flat_map(|texel| texel.to_array()));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use spherule_kernel::Sphere;
+
+    /// One of them is seen; if each were a light, what they shine on would be twice as bright.
+    #[test]
+    fn of_equal_spheres_that_glow_one_shines() {
+        let mut world = World::default();
+        let glow = world.add_material(Material::emissive(Vec3::ONE));
+        let grey = world.add_material(Material::diffuse(Vec3::ONE));
+        let above = Vec3::new(0.0, 3.0, 0.0);
+        world.add(Sphere::new(above, 0.5), glow);
+        world.add(Sphere::new(Vec3::ZERO, 1.0), grey);
+        world.add(Sphere::new(above, 0.5), glow);
+        world.add(Sphere::new(above, 0.25), glow);
+        let scene = Scene::new(world);
+        for acceleration in [Acceleration::Tree, Acceleration::BruteForce] {
+            let prepared = Prepared::new(&scene, EffectChoice::Auto, acceleration);
+            assert_eq!(
+                prepared.expect("a scene").lights.len(),
+                2,
+                "{acceleration:?}"
+            );
+        }
+    }
 }
