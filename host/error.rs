@@ -6,6 +6,8 @@ use std::time::Duration;
 
 use spherule_kernel::Rung;
 
+use crate::shown::shown_path;
+
 /// A result whose error is spherule's.
 pub type Result<T, E = Error> = std::result::Result<T, E>;
 
@@ -141,7 +143,7 @@ pub enum Error {
     Scene(#[from] Box<SceneError>),
 
     /// An image cannot be made, read or written.
-    #[error("{path}: {reason}", path = path.display())]
+    #[error("{path}: {reason}", path = shown_path(path))]
     Image {
         /// The image file.
         path: PathBuf,
@@ -254,7 +256,7 @@ impl Place {
 impl SceneError {
     /// `file:line:column: `, as far as they are known.
     fn whereabouts(&self) -> String {
-        let path = self.path.display();
+        let path = shown_path(&self.path);
         match &self.place {
             Some(place) => {
                 let (line, column) = place.line_column();

@@ -17,6 +17,8 @@
 //! | [`film`] | images: encoding, files, comparison |
 //! | [`error`] | [`Error`]: what can go wrong, and how to mend it |
 //! | [`kernel_module`] | the kernel's SPIR-V that this build embeds |
+//! | `plural` | counts with their nouns |
+//! | `shown` | texts of unknown origin, as a terminal may show them |
 //! | [`cli`] | the command `spherule` |
 
 #![deny(missing_docs)]
@@ -28,8 +30,10 @@ pub mod device;
 pub mod error;
 pub mod film;
 pub mod kernel_module;
+mod plural;
 pub mod render;
 pub mod scene;
+mod shown;
 pub mod trace;
 
 pub use device::{Device, DeviceChoice, Gpu};

@@ -19,9 +19,11 @@ use crate::accuracy::samples::{self, Step};
 use crate::accuracy::{report, scene_rays};
 use crate::device::Device;
 use crate::error::{Error, Result, SceneError};
+use crate::plural::count_of;
 use crate::render::fit::fit;
 use crate::render::{QUIET, Settings, render};
 use crate::scene::Scene;
+use crate::shown::shown_path;
 
 /// Everything that was measured; the JSON output is this.
 #[derive(Debug, Serialize)]
@@ -127,7 +129,7 @@ pub(super) fn run(arguments: &AccuracyArguments) -> Result<ExitCode> {
             let samples = scene_rays::sample(&scene, SEED, arguments.rays as usize)?;
             families.push(measure(&device, &rungs, "scene", &samples)?);
             frames = Some(FramesReport {
-                scene: path.display().to_string(),
+                scene: shown_path(path),
                 spheres: scene.world.spheres.len(),
                 width: scene.width,
                 height: scene.height,
@@ -162,7 +164,7 @@ pub(super) fn run(arguments: &AccuracyArguments) -> Result<ExitCode> {
     }
     if let Some(path) = &arguments.output {
         write(path, &page(&report))?;
-        note(&format!("wrote {}", path.display()));
+        note(&format!("wrote {}", shown_path(path)));
     }
     print(&table(&report))?;
     Ok(ExitCode::SUCCESS)
@@ -319,9 +321,9 @@ fn table(report: &Report) -> String {
 
 fn frames_table(frames: &FramesReport) -> String {
     let mut text = format!(
-        "{}: {} spheres, {} × {} pixels\n\n{:12} {:>18} {:>9} {:>18} {:>9}\n",
+        "{}: {}, {} × {} pixels\n\n{:12} {:>18} {:>9} {:>18} {:>9}\n",
         frames.scene,
-        frames.spheres,
+        count_of(frames.spheres, "sphere"),
         frames.width,
         frames.height,
         "rung",

@@ -15,6 +15,7 @@ use crate::bench::verify::{Verified, verify};
 use crate::device::Device;
 use crate::error::{Error, Result};
 use crate::scene::tree::Acceleration;
+use crate::shown::shown_path;
 use crate::trace::CpuTracer;
 use spherule_kernel::Rung;
 
@@ -40,7 +41,7 @@ pub(super) fn run(arguments: &BenchArguments) -> Result<ExitCode> {
             let tracer = CpuTracer::new(&scene.world.spheres, plan.acceleration);
             let sets = RaySets::of(&scene, &tracer, reach)?;
             export(folder, name, &scene, &sets, &tracer, plan.rung)?;
-            note(&format!("wrote {name} to {}", folder.display()));
+            note(&format!("wrote {name} to {}", shown_path(folder)));
         }
         return Ok(ExitCode::SUCCESS);
     }

@@ -9,6 +9,7 @@ use super::args::DevicesArguments;
 use super::print;
 use crate::device::{AdapterReport, list_adapters};
 use crate::error::Result;
+use crate::plural::count_of;
 
 pub(super) fn run(arguments: &DevicesArguments) -> Result<ExitCode> {
     let adapters = list_adapters();
@@ -27,7 +28,12 @@ fn table(adapters: &[AdapterReport], threads: usize) -> String {
     let mark = |is_chosen: bool| if is_chosen { "*" } else { " " };
     let mut text = String::new();
     // Writing to a String cannot fail.
-    let _ = writeln!(text, "{} CPU, {threads} threads", mark(chosen.is_none()));
+    let _ = writeln!(
+        text,
+        "{} CPU, {}",
+        mark(chosen.is_none()),
+        count_of(threads, "thread")
+    );
     for (index, adapter) in adapters.iter().enumerate() {
         let yes_no = |yes: bool| if yes { "yes" } else { "no" };
         let _ = writeln!(

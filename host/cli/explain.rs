@@ -13,11 +13,13 @@ use crate::accuracy::choose::{DEFAULT_TOLERANCE, choose};
 use crate::device::Device;
 use crate::error::Result;
 use crate::kernel_module;
+use crate::plural::count_of;
 use crate::render::cost::{self, Cost};
 use crate::render::fit::fit;
 use crate::render::paths::EffectChoice;
 use crate::render::{QUIET, Settings, render};
 use crate::scene::Scene;
+use crate::shown::shown_path;
 
 #[derive(Debug, Serialize)]
 struct Report {
@@ -134,7 +136,7 @@ fn report(
         })
         .collect();
     Ok(Report {
-        scene: arguments.input.display().to_string(),
+        scene: shown_path(&arguments.input),
         spheres: scene.world.spheres.len(),
         width: scene.width,
         height: scene.height,
@@ -154,11 +156,11 @@ fn report(
 fn table(report: &Report) -> String {
     let [width, height] = report.whole_image;
     let mut text = format!(
-        "{}: {} spheres, {width} × {height} pixels, {} samples, at most {} bounces\n{}, precision {} ({})\n",
+        "{}: {}, {width} × {height} pixels, {}, at most {}\n{}, precision {} ({})\n",
         report.scene,
-        report.spheres,
-        report.samples,
-        report.max_bounces,
+        count_of(report.spheres, "sphere"),
+        count_of(report.samples as usize, "sample"),
+        count_of(report.max_bounces as usize, "bounce"),
         report.device,
         report.precision,
         report.why_precision,

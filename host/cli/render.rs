@@ -15,10 +15,12 @@ use crate::device::{Device, DeviceChoice};
 use crate::error::{Error, Result, SceneError};
 use crate::film::Image;
 use crate::film::compare::{Comparison, Tolerance};
+use crate::plural::count_of;
 use crate::render::paths::{Reached, StoppedBy};
 use crate::render::{Rendered, Settings, estimate, render};
 use crate::scene::Scene;
 use crate::scene::tree::Acceleration;
+use crate::shown::shown_path;
 
 /// What `--stats` writes.
 #[derive(Debug, Serialize)]
@@ -161,11 +163,11 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<ExitCode> {
     let samples = match rendered.reached {
         None => String::new(),
         Some(reached) if reached.noise.is_infinite() => {
-            format!(", {} samples a pixel", reached.samples)
+            format!(", {} a pixel", count_of(reached.samples as usize, "sample"))
         }
         Some(reached) => format!(
-            ", {} samples a pixel{}, noise {:.2} %",
-            reached.samples,
+            ", {} a pixel{}, noise {:.2} %",
+            count_of(reached.samples as usize, "sample"),
             match reached.stopped_by {
                 StoppedBy::Samples => "",
                 StoppedBy::TimeLimit => " (the time was up)",
@@ -175,16 +177,11 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<ExitCode> {
         ),
     };
     say(&format!(
-        "wrote {}: {} × {} pixels{samples}, {} {}, {}",
-        output.display(),
+        "wrote {}: {} × {} pixels{samples}, {}, {}",
+        shown_path(&output),
         image.width(),
         image.height(),
-        scene.world.spheres.len(),
-        if scene.world.spheres.len() == 1 {
-            "sphere"
-        } else {
-            "spheres"
-        },
+        count_of(scene.world.spheres.len(), "sphere"),
         human(total),
     ));
 

@@ -6,6 +6,7 @@ use std::str::FromStr;
 use serde::Serialize;
 
 use crate::error::{Error, Result};
+use crate::shown::shown;
 
 /// Which device a person wants.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -97,7 +98,7 @@ impl AdapterReport {
             max_binding: limits.max_storage_buffer_binding_size,
             max_workgroup: limits.max_compute_invocations_per_workgroup,
             real_gpu: rank(&info) < SOFTWARE_RANK,
-            name: info.name,
+            name: shown(&info.name).into_owned(),
         }
     }
 }
@@ -189,11 +190,13 @@ pub(super) fn choose(choice: &DeviceChoice) -> Result<(Option<wgpu::Adapter>, St
         None => {
             let names: Vec<String> = adapters
                 .iter()
-                .map(|adapter| adapter.get_info().name)
+                .map(|adapter| shown(&adapter.get_info().name).into_owned())
                 .collect();
             Err(Error::NoAdapter {
                 wanted: match choice {
-                    DeviceChoice::Named(part) => format!("has a name that contains \"{part}\""),
+                    DeviceChoice::Named(part) => {
+                        format!("has a name that contains \"{}\"", shown(part))
+                    }
                     _ => "was found".into(),
                 },
                 found: if names.is_empty() {

@@ -27,6 +27,7 @@ use super::errors::{Watch, one_line};
 use super::spirv::Module;
 use super::timer::Timer;
 use crate::error::{Error, Result};
+use crate::shown::shown;
 
 /// How a device is opened; for tests and for odd drivers.
 #[derive(Clone, Debug)]
@@ -144,7 +145,7 @@ impl Gpu {
     pub fn from_adapter(adapter: &wgpu::Adapter, options: GpuOptions) -> Result<Self> {
         let info = adapter.get_info();
         let is_software = info.device_type == wgpu::DeviceType::Cpu;
-        let name = info.name;
+        let name = shown(&info.name).into_owned();
         let passthrough = adapter::takes_spirv(adapter) && !options.through_naga;
         let mut wanted = wgpu::Features::SHADER_F64 | wgpu::Features::TIMESTAMP_QUERY;
         if passthrough {

@@ -18,6 +18,7 @@ pub mod spirv;
 mod timer;
 
 use crate::error::Result;
+use crate::plural::count_of;
 pub use adapter::{AdapterReport, DeviceChoice, list_adapters};
 pub use buffer::{Binding, Buffer};
 pub use errors::is_waiting;
@@ -56,7 +57,7 @@ impl Device {
     #[must_use]
     pub fn name(&self) -> String {
         match self {
-            Self::Cpu => format!("CPU, {} threads", rayon::current_num_threads()),
+            Self::Cpu => format!("CPU, {}", count_of(rayon::current_num_threads(), "thread")),
             Self::Gpu(gpu) => gpu.name().into(),
         }
     }

@@ -9,6 +9,7 @@ use image::{ExtendedColorType, ImageEncoder};
 
 use super::Image;
 use crate::error::{Error, Result};
+use crate::shown::shown_path;
 
 /// How rows are prepared for compression: to choose anew for each row takes as long as to compress them.
 const FILTER: FilterType = FilterType::Up;
@@ -106,7 +107,7 @@ impl Image {
                 path,
                 format!(
                     "cannot be written: there is no directory {}",
-                    directory.display()
+                    shown_path(directory)
                 ),
                 "make the directory, or name another",
             ));

@@ -4,6 +4,8 @@ use spherule_kernel::microfacet::SMOOTHEST;
 use spherule_kernel::{Effects, Material};
 
 use super::{Sampling, Scene};
+use crate::plural::count_of;
+use crate::shown::shown;
 
 /// An effect, and the sentence that says what calls for it.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -85,7 +87,7 @@ impl Scene {
         let mut called = Vec::new();
         let mut call = |effect, by: String| called.push(of(effect, by));
         let material = |index: usize| match self.world.material_names.get(index) {
-            Some(name) if !name.is_empty() => format!("material `{name}`"),
+            Some(name) if !name.is_empty() => format!("material `{}`", shown(name)),
             _ => format!("material {index}"),
         };
         let first = |wanted: &dyn Fn(&Material) -> bool| self.first_material(wanted);
@@ -169,9 +171,9 @@ impl Scene {
             call(
                 Effects::INTERREFLECTION,
                 format!(
-                    "{} is of kind diffuse, and light may bounce {} times",
+                    "{} is of kind diffuse, and light may bounce {}",
                     material(index),
-                    self.sampling.max_bounces
+                    count_of(self.sampling.max_bounces as usize, "time")
                 ),
             );
         }

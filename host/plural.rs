@@ -1,0 +1,19 @@
+//! Counts with their nouns.
+
+/// How many there are of something, and the right noun: "1 atom", "2 atoms".
+#[must_use]
+pub fn count_of(count: usize, noun: &str) -> String {
+    let plural = if count == 1 { "" } else { "s" };
+    format!("{count} {noun}{plural}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::count_of;
+
+    #[test]
+    fn one_is_singular() {
+        let counts = [0, 1, 2].map(|count| count_of(count, "atom"));
+        assert_eq!(counts, ["0 atoms", "1 atom", "2 atoms"]);
+    }
+}
