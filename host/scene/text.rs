@@ -24,6 +24,14 @@ pub(super) fn read_text(path: &Path) -> Result<String> {
                 "is a directory".to_owned(),
                 "name a file",
             ),
+            io::ErrorKind::UnexpectedEof => (
+                "got shorter while it was read".to_owned(),
+                "wait until whoever writes it is done",
+            ),
+            io::ErrorKind::OutOfMemory => (
+                "there is no memory to read it".to_owned(),
+                "use a machine with more memory",
+            ),
             _ => (
                 format!("cannot be read: {error}"),
                 "check that the file may be read",
@@ -31,11 +39,22 @@ pub(super) fn read_text(path: &Path) -> Result<String> {
         };
         SceneError::without_place(path, message, help)
     })?;
+    if bytes.first() == Some(&0) {
+        return Err(Error::Scene(SceneError::without_place(
+            path,
+            "is no text: it begins with a byte of zero",
+            "name a text file; UTF-16 must be converted to UTF-8 first",
+        )));
+    }
     String::from_utf8(bytes).map_err(|error| {
         let at = error.utf8_error().valid_up_to();
+        let line = 1 + error.as_bytes()[..at]
+            .iter()
+            .filter(|byte| **byte == b'\n')
+            .count();
         Error::Scene(SceneError::without_place(
             path,
-            format!("byte {at} is not UTF-8 text"),
+            format!("byte {at}, in line {line}, is not UTF-8 text"),
             "save the file as UTF-8; compressed files must be unpacked first",
         ))
     })
@@ -46,32 +65,28 @@ const LARGE_FILE: u64 = 1 << 24;
 /// What each reads at once.
 const PIECE: usize = 1 << 22;
 
-/// Reads a whole file.
+/// Reads a whole file; of one that begins with a byte of zero, that byte.
 fn read_bytes(path: &Path) -> io::Result<Vec<u8>> {
     let mut file = File::open(path)?;
     let length = file.metadata()?.len();
-    match usize::try_from(length) {
-        // Where there is no room, what follows says so.
-        Ok(length) if length as u64 >= LARGE_FILE && has_room(length) => {
-            read_in_pieces(&file, length, PIECE)
-        }
-        // What is no file has a length of zero, and may be opened once only.
-        _ => {
-            let mut bytes = Vec::new();
-            file.read_to_end(&mut bytes)?;
-            Ok(bytes)
-        }
+    if length >= LARGE_FILE {
+        let length = usize::try_from(length).map_err(|_| io::ErrorKind::OutOfMemory)?;
+        return read_in_pieces(&file, length, PIECE);
     }
-}
-
-fn has_room(length: usize) -> bool {
-    Vec::<u8>::new().try_reserve_exact(length).is_ok()
+    // What is no file has a length of zero, may be opened once only, and need not have an end.
+    let mut bytes = Vec::new();
+    file.by_ref().take(1).read_to_end(&mut bytes)?;
+    if bytes != [0] {
+        file.read_to_end(&mut bytes)?;
+    }
+    Ok(bytes)
 }
 
 /// Reads `length` bytes, `piece` at once.
 fn read_in_pieces(file: &File, length: usize, piece: usize) -> io::Result<Vec<u8>> {
     // Zeros that the system gives as such: no thread writes them.
-    let mut bytes = vec![0; length];
+    let mut bytes: Vec<u8> =
+        bytemuck::allocation::try_zeroed_vec(length).map_err(|()| io::ErrorKind::OutOfMemory)?;
     bytes
         .par_chunks_mut(piece)
         .enumerate()
@@ -114,5 +129,45 @@ mod tests {
         }
         let error = read_in_pieces(&file, whole.len() + 1, 1000).expect_err("too few");
         assert_eq!(error.kind(), io::ErrorKind::UnexpectedEof);
+    }
+
+    /// What a person may name in place of a file.
+    #[test]
+    fn what_is_no_text_is_refused() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let file = folder.path().join("file");
+        for (bytes, word) in [
+            (&[0; 5000][..], "byte of zero"),
+            (b"one\ntwo \xff\n", "byte 8, in line 2,"),
+            (b"\xff\xfea\0", "byte 0, in line 1,"),
+        ] {
+            std::fs::write(&file, bytes).expect("a file");
+            let error = read_text(&file).expect_err("a refusal").to_string();
+            assert!(error.contains(word), "{error}");
+        }
+        let large = vec![0; LARGE_FILE as usize];
+        std::fs::write(&file, large).expect("a file");
+        let error = read_text(&file).expect_err("a refusal").to_string();
+        assert!(error.contains("byte of zero"), "{error}");
+        std::fs::write(&file, "").expect("a file");
+        assert_eq!(read_text(&file).expect("nothing"), "");
+        let error = read_text(folder.path()).expect_err("a refusal").to_string();
+        assert!(error.contains("is a directory"), "{error}");
+    }
+
+    /// Pipes are opened once, and what has no end is not waited for.
+    #[cfg(unix)]
+    #[test]
+    fn streams_are_read() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let pipe = folder.path().join("pipe");
+        let made = std::process::Command::new("mkfifo").arg(&pipe).status();
+        assert!(made.expect("mkfifo").success());
+        std::thread::scope(|scope| {
+            scope.spawn(|| std::fs::write(&pipe, "a text").expect("a reader"));
+            assert_eq!(read_text(&pipe).expect("a text"), "a text");
+        });
+        let error = read_text(Path::new("/dev/zero")).expect_err("a refusal");
+        assert!(error.to_string().contains("byte of zero"), "{error}");
     }
 }

@@ -15,6 +15,8 @@ use super::extension;
 use super::text::read_text;
 use super::world::{GRAIN, World};
 use crate::error::{Error, Place, Result, SceneError};
+use crate::plural::count_of;
+use crate::scene::limits::{MAX_LENGTH, MAX_SPHERES};
 use elements::Element;
 
 /// An atom of a molecule.
@@ -45,10 +47,27 @@ pub fn load(path: &Path) -> Result<World> {
         pdb::parse(&text)
     };
     match atoms {
+        Ok(atoms) if atoms.len() > MAX_SPHERES => Err(Error::Scene(SceneError::without_place(
+            path,
+            format!(
+                "the file has {}, more than {MAX_SPHERES}",
+                count_of(atoms.len(), "atom")
+            ),
+            "render it in parts",
+        ))),
         Ok(atoms) => Ok(world(&atoms)),
         Err(wrong) => Err(wrong.into_error(path, text)),
     }
 }
+
+/// Whether an atom may be so far from the origin, along an axis; its radius is less than what the
+/// largest floats below the limit are apart.
+fn is_coordinate(number: f32) -> bool {
+    number.abs() < MAX_LENGTH
+}
+
+/// What is said of coordinates that are none.
+const TOO_FAR: &str = "coordinates are in ångström, and below 1e18";
 
 /// A world of these atoms, with one material for each element that occurs.
 #[must_use]
@@ -62,7 +81,8 @@ pub fn world(atoms: &[Atom]) -> World {
             .filter(|atom| is_unknown(atom.element))
             .count();
         tracing::warn!(
-            "{unknown} atoms are of an element that cannot be told; they are drawn pink, with a radius of {} Å",
+            "{} of an element that cannot be told: drawn pink, with a radius of {} Å",
+            count_of(unknown, "atom"),
             elements::UNKNOWN.radius
         );
     }

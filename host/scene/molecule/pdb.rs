@@ -20,7 +20,7 @@ use std::collections::HashMap;
 use glam::Vec3;
 
 use super::elements::{self, Element};
-use super::{Atom, WrongLine};
+use super::{Atom, TOO_FAR, WrongLine, is_coordinate};
 
 /// Reads the atoms of a PDB file.
 ///
@@ -91,7 +91,6 @@ fn position(line: &Columns<'_>, number: usize) -> Result<Vec3, WrongLine> {
             .trim()
             .parse::<f32>()
             .ok()
-            .filter(|value| value.is_finite())
             .ok_or_else(|| {
                 WrongLine::new(
                     number,
@@ -99,6 +98,17 @@ fn position(line: &Columns<'_>, number: usize) -> Result<Vec3, WrongLine> {
                     "not a number",
                     "coordinates are decimal numbers in columns 31–38, 39–46 and 47–54; shift the line into its columns",
                 )
+            })
+            .and_then(|value| {
+                if is_coordinate(value) {
+                    return Ok(value);
+                }
+                Err(WrongLine::new(
+                    number,
+                    format!("columns {from} to {} hold no place: {value:e}", from + 7),
+                    "too far away, or not finite",
+                    TOO_FAR,
+                ))
             })
     };
     Ok(Vec3::new(coordinate(31)?, coordinate(39)?, coordinate(47)?))
@@ -314,6 +324,8 @@ mod tests {
             (format!("{good}\n{}", &good[..50]), 1),
             (format!("{good}\n{}", good.replace("1.000", "x.000")), 1),
             (format!("{good}\n{}", good.replace("1.000", "  nan")), 1),
+            (format!("{good}\n{}", good.replace("1.000", " 1e30")), 1),
+            (format!("{good}\n{}", good.replace("1.000", "-1e18")), 1),
             (format!("{good}\n{}", good.replace("1.000", "é.000")), 1),
             ("HEADER\nEND\n".into(), 1),
             (String::new(), 0),

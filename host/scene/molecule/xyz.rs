@@ -10,8 +10,8 @@ use glam::Vec3;
 use rayon::prelude::*;
 
 use super::elements::{self, Element};
-use super::{Atom, WrongLine};
-use crate::scene::limits::MAX_LENGTH;
+use super::{Atom, WrongLine, is_coordinate};
+use crate::plural::count_of;
 
 /// Reads the atoms of the first frame of an XYZ file.
 ///
@@ -56,7 +56,7 @@ pub fn parse(text: &str) -> Result<Vec<Atom>, WrongLine> {
     atoms.try_reserve_exact(lines).map_err(|_| {
         WrongLine::new(
             0,
-            format!("there is no memory for {lines} atoms"),
+            format!("there is no memory for {}", count_of(lines, "atom")),
             "too many",
             "use a machine with more memory, or fewer atoms",
         )
@@ -71,7 +71,7 @@ pub fn parse(text: &str) -> Result<Vec<Atom>, WrongLine> {
                 return Err(WrongLine::new(
                     line,
                     "an atom needs an element and three coordinates",
-                    "a coordinate is missing, no number, or too large",
+                    "a coordinate is missing, no number, or 1e18 and more",
                     "write lines like: C 0.0 1.2 -3.4",
                 ));
             }
@@ -81,7 +81,7 @@ pub fn parse(text: &str) -> Result<Vec<Atom>, WrongLine> {
         return Err(missing(FIRST_ATOM + lines - 1, count, lines));
     }
     if dummies > 0 {
-        tracing::warn!("{dummies} dummy atoms are left out");
+        tracing::warn!("left out: {}", count_of(dummies, "dummy atom"));
     }
     if atoms.is_empty() {
         return Err(WrongLine::new(
@@ -235,7 +235,10 @@ fn read_block(block: &Block<'_>, room: &mut [MaybeUninit<Atom>]) -> Read {
 fn missing(line: usize, expected: usize, found: usize) -> WrongLine {
     WrongLine::new(
         line,
-        format!("the file promises {expected} atoms and holds {found}"),
+        format!(
+            "the file promises {} and holds {found}",
+            count_of(expected, "atom")
+        ),
         "the atoms end here",
         "the file is truncated, or the number on its first line is wrong",
     )
@@ -246,7 +249,7 @@ fn number_of(text: &str) -> Option<f32> {
     let plain = |text: &str| text.parse().ok();
     plain(text)
         .or_else(|| plain(&text.replace(['D', 'd'], "e")))
-        .filter(|value: &f32| value.abs() <= MAX_LENGTH)
+        .filter(|value| is_coordinate(*value))
 }
 
 /// From `C`, `cl`, `17`, and labels such as `C12` and `Fe2+`.
@@ -325,6 +328,10 @@ mod tests {
             ("1\n\nC 0 0\n", 2),
             ("1\n\nC 0 0 nan\n", 2),
             ("1\n\nC 0 0 inf\n", 2),
+            ("1\n\nC 0 1e30 0\n", 2),
+            ("1\n\nC 0 -1e18 0\n", 2),
+            ("1e9\n\nC 0 0 0\n", 0),
+            ("4000000000\n\nC 0 0 0\n", 2),
             ("1\nProperties=pos:R:3:species:S:1\n0 0 0 C\n", 1),
         ] {
             let wrong = parse(text).expect_err(text);
