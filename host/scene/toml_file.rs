@@ -1,23 +1,33 @@
 //! Scenes in TOML, read with spans so that a mistake points at its line and column.
 
+mod split;
+mod value;
+
 use std::collections::BTreeMap;
+use std::ops::Range;
 use std::path::Path;
 
 use glam::Vec3;
+use rayon::prelude::*;
 use serde::Deserialize;
+use serde::de::DeserializeOwned;
 use spherule_kernel::fog::Fog;
 use spherule_kernel::{Material, Sphere};
 use toml::Spanned;
 
-use super::limits::{self, Range};
+use super::limits;
 use super::surroundings::{FogBall, Lens, PointLight, Sun, Surroundings, Tonemap};
 use super::{Scene, View, World, environment, molecule, text::read_text};
 use crate::error::{Error, Place, Result, SceneError};
+use crate::plural::count_of;
+use crate::shown::{shown, shown_up_to};
+use split::{Batch, Piece, Split};
+use value::{Value, said};
 
 /// The angle across the sun as it is seen from the Earth, in degrees.
 const DEFAULT_SUN_SIZE: f32 = 0.53;
 
-/// The file as written; every value keeps its span.
+/// The file as written, but for its `[[sphere]]` tables; every value keeps its span.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct File {
@@ -26,6 +36,7 @@ struct File {
     camera: Option<Spanned<CameraTable>>,
     #[serde(default)]
     materials: BTreeMap<String, Spanned<MaterialTable>>,
+    /// Spheres in one list, `sphere = [{ center = … }, …]`.
     #[serde(default, rename = "sphere")]
     spheres: Vec<Spanned<SphereTable>>,
     particles: Option<ParticlesTable>,
@@ -36,54 +47,45 @@ struct File {
 }
 
 #[derive(Deserialize, Default)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a table")]
 struct ImageTable {
-    width: Option<Spanned<i64>>,
-    height: Option<Spanned<i64>>,
-    background: Option<Spanned<Vec<f64>>>,
-    transparent: Option<bool>,
-    samples: Option<Spanned<i64>>,
-    max_bounces: Option<Spanned<i64>>,
-    ambient_occlusion: Option<Spanned<f64>>,
-    seed: Option<Spanned<i64>>,
-    exposure: Option<Spanned<f64>>,
-    tonemap: Option<TonemapName>,
-}
-
-#[derive(Deserialize, Clone, Copy)]
-#[serde(rename_all = "lowercase")]
-enum TonemapName {
-    Clamp,
-    Reinhard,
-    Aces,
+    width: Option<Spanned<Value>>,
+    height: Option<Spanned<Value>>,
+    background: Option<Spanned<Value>>,
+    transparent: Option<Spanned<Value>>,
+    samples: Option<Spanned<Value>>,
+    max_bounces: Option<Spanned<Value>>,
+    ambient_occlusion: Option<Spanned<Value>>,
+    seed: Option<Spanned<Value>>,
+    exposure: Option<Spanned<Value>>,
+    tonemap: Option<Spanned<Value>>,
 }
 
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a table")]
 struct CameraTable {
-    eye: Spanned<Vec<f64>>,
-    target: Spanned<Vec<f64>>,
-    up: Option<Spanned<Vec<f64>>>,
-    vertical_fov: Option<Spanned<f64>>,
-    aperture: Option<Spanned<f64>>,
-    focus_distance: Option<Spanned<f64>>,
-    shutter: Option<Spanned<Vec<f64>>>,
+    eye: Spanned<Value>,
+    target: Spanned<Value>,
+    up: Option<Spanned<Value>>,
+    vertical_fov: Option<Spanned<Value>>,
+    aperture: Option<Spanned<Value>>,
+    focus_distance: Option<Spanned<Value>>,
+    shutter: Option<Spanned<Value>>,
 }
 
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a table")]
 struct MaterialTable {
-    kind: MaterialKind,
-    color: Option<Spanned<Vec<f64>>>,
-    roughness: Option<Spanned<f64>>,
-    index: Option<Spanned<f64>>,
-    absorption: Option<Spanned<Vec<f64>>>,
-    thickness: Option<Spanned<f64>>,
-    strength: Option<Spanned<f64>>,
+    kind: Spanned<Value>,
+    color: Option<Spanned<Value>>,
+    roughness: Option<Spanned<Value>>,
+    index: Option<Spanned<Value>>,
+    absorption: Option<Spanned<Value>>,
+    thickness: Option<Spanned<Value>>,
+    strength: Option<Spanned<Value>>,
 }
 
-#[derive(Deserialize, Clone, Copy, PartialEq, Debug)]
-#[serde(rename_all = "lowercase")]
+#[derive(Clone, Copy, PartialEq)]
 enum MaterialKind {
     Diffuse,
     Metal,
@@ -92,48 +94,48 @@ enum MaterialKind {
 }
 
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a table")]
 struct SphereTable {
-    center: Spanned<Vec<f64>>,
-    radius: Spanned<f64>,
-    material: Option<Spanned<String>>,
-    velocity: Option<Spanned<Vec<f64>>>,
+    center: Spanned<Value>,
+    radius: Spanned<Value>,
+    material: Option<Spanned<Value>>,
+    velocity: Option<Spanned<Value>>,
 }
 
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a table")]
 struct LightTable {
-    position: Spanned<Vec<f64>>,
-    intensity: Spanned<Vec<f64>>,
-    radius: Option<Spanned<f64>>,
+    position: Spanned<Value>,
+    intensity: Spanned<Value>,
+    radius: Option<Spanned<Value>>,
 }
 
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a table")]
 struct SkyTable {
-    horizon: Option<Spanned<Vec<f64>>>,
-    zenith: Option<Spanned<Vec<f64>>>,
-    sun_direction: Option<Spanned<Vec<f64>>>,
-    sun_size: Option<Spanned<f64>>,
-    sun_irradiance: Option<Spanned<Vec<f64>>>,
-    image: Option<Spanned<String>>,
-    strength: Option<Spanned<f64>>,
+    horizon: Option<Spanned<Value>>,
+    zenith: Option<Spanned<Value>>,
+    sun_direction: Option<Spanned<Value>>,
+    sun_size: Option<Spanned<Value>>,
+    sun_irradiance: Option<Spanned<Value>>,
+    image: Option<Spanned<Value>>,
+    strength: Option<Spanned<Value>>,
 }
 
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a table")]
 struct FogTable {
-    extinction: Spanned<f64>,
-    albedo: Option<Spanned<Vec<f64>>>,
-    anisotropy: Option<Spanned<f64>>,
-    center: Option<Spanned<Vec<f64>>>,
-    radius: Option<Spanned<f64>>,
+    extinction: Spanned<Value>,
+    albedo: Option<Spanned<Value>>,
+    anisotropy: Option<Spanned<Value>>,
+    center: Option<Spanned<Value>>,
+    radius: Option<Spanned<Value>>,
 }
 
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a table")]
 struct ParticlesTable {
-    file: Spanned<String>,
+    file: Spanned<Value>,
 }
 
 /// Reads the scene at `path`; files that it names count from its directory.
@@ -147,51 +149,126 @@ pub(super) fn load(path: &Path) -> Result<Scene> {
 ///
 /// [`Error::Scene`] with the place of the mistake.
 pub fn parse(path: &Path, text: String) -> Result<Scene> {
-    let file: File = match toml::from_str(&text) {
-        Ok(file) => file,
-        Err(error) => {
-            let span = error.span().unwrap_or(0..text.len().min(1));
-            let message = error.message().trim().to_owned();
-            return Err(Error::Scene(Box::new(SceneError {
-                path: path.into(),
-                help: help_for_toml(&message),
-                place: Some(Place {
-                    text,
-                    span,
-                    label: "here".into(),
-                }),
-                message,
-            })));
-        }
+    let split = Split::of(&text);
+    let reader = Reader {
+        path,
+        text: &text,
+        pieces: &split.others,
     };
-    Reader { path, text }.scene(file)
+    if split.others_length() > MAX_TEXT {
+        let last = Piece::whole(text.len()..text.len());
+        return Err(Reader {
+            path,
+            text: &text,
+            pieces: &[last],
+        }
+        .wrong_at(
+            0..0,
+            format!("the file is longer than {MAX_TEXT} bytes beside its [[sphere]] tables"),
+            "ends here",
+            "write spheres as [[sphere]] tables, or put them into a file of [particles]",
+        )
+        .into());
+    }
+    let others: String = split
+        .others
+        .iter()
+        .map(|piece| &text[piece.range.clone()])
+        .collect();
+    let file: File = reader.read(&others)?;
+    drop(others);
+    if let Some(sphere) = split.spheres.first()
+        && !file.spheres.is_empty()
+    {
+        let place = Piece::whole(sphere.range.clone());
+        return Err(Reader {
+            path,
+            text: &text,
+            pieces: &[place],
+        }
+        .wrong_at(
+            0.."[[sphere]]".len(),
+            "there is a list of spheres already",
+            "a table of another",
+            "write all spheres as [[sphere]] tables, or all in one list",
+        )
+        .into());
+    }
+    reader.scene(file, &split.spheres)
+}
+
+/// The most bytes of a file beside its `[[sphere]]` tables, and of one of those: parsing takes some
+/// fifty times as many.
+const MAX_TEXT: usize = 1 << 24;
+const MAX_TABLE: usize = 1 << 16;
+/// Batches of `[[sphere]]` tables that are parsed, each by a thread, before what they say is kept:
+/// what a parser takes for a table is forty times as long as the table.
+const AT_ONCE: usize = 64;
+
+/// Some `[[sphere]]` tables.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Spheres {
+    sphere: Vec<Spanned<SphereTable>>,
 }
 
 fn help_for_toml(message: &str) -> String {
     if message.contains("unknown field") {
         "check the spelling; docs/scenes.md lists every key".into()
-    } else if message.contains("unknown variant") {
-        "materials are of kind \"diffuse\", \"metal\", \"glass\" or \"emissive\"; a tonemap is \"clamp\", \"reinhard\" or \"aces\"".into()
     } else if message.contains("missing field") {
         "add it; docs/scenes.md lists every key".into()
     } else {
-        "the README shows a whole scene; tables are [name], spheres are [[sphere]], strings stand in quotes".into()
+        "the README shows a whole scene; tables are [name], spheres are [[sphere]], texts stand in quotes".into()
     }
 }
 
+/// serde's words in plain ones.
+fn plain(message: &str) -> String {
+    let mut message = message.to_owned();
+    for (theirs, ours) in [
+        ("invalid type: ", "this is "),
+        (", expected a sequence", ", not a list"),
+        (", expected a table", ", not a table"),
+        (", expected a map", ", not a table"),
+        ("integer `", "the whole number `"),
+        ("floating point `", "the number `"),
+        ("boolean `", "`"),
+        ("this is string ", "this is the text "),
+        ("this is map", "this is a table"),
+        ("this is sequence", "this is a list"),
+    ] {
+        message = message.replacen(theirs, ours, 1);
+    }
+    message
+}
+
 /// Checks values, knowing the text that they came from.
+#[derive(Clone, Copy)]
 struct Reader<'a> {
     path: &'a Path,
-    text: String,
+    text: &'a str,
+    /// What was parsed, of the text.
+    pieces: &'a [Piece],
 }
 
 impl Reader<'_> {
-    fn scene(&self, file: File) -> Result<Scene> {
+    /// Parses a text made of the pieces.
+    fn read<T: DeserializeOwned>(&self, text: &str) -> Result<T> {
+        toml::from_str(text).map_err(|error| {
+            let message = plain(error.message().trim());
+            let help = help_for_toml(&message);
+            let span = error.span().unwrap_or(0..text.len().min(1));
+            let message = shown_up_to(&message, 400).into_owned();
+            self.wrong_at(span, message, "here", help).into()
+        })
+    }
+
+    fn scene(&self, file: File, spheres: &[Batch]) -> Result<Scene> {
         let lens = match &file.camera {
             Some(camera) => self.lens(camera.get_ref())?,
             None => Lens::default(),
         };
-        let mut scene = Scene::new(self.world(&file, lens.shutter)?);
+        let mut scene = Scene::new(self.world(&file, spheres, lens.shutter)?);
         scene.lens = lens;
         if let Some(width) = &file.image.width {
             scene.width = self.side("width", width)?;
@@ -219,7 +296,12 @@ impl Reader<'_> {
     }
 
     fn image(&self, table: &ImageTable, scene: &mut Scene) -> Result<()> {
-        scene.transparent = table.transparent.unwrap_or(false);
+        if let Some(transparent) = &table.transparent {
+            scene.transparent = match transparent.get_ref() {
+                Value::Truth(truth) => *truth,
+                _ => return Err(self.not_a("transparent", transparent, "true or false")),
+            };
+        }
         if let Some(samples) = &table.samples {
             scene.sampling.samples =
                 Some(self.whole("samples", samples, 1, limits::MAX_SAMPLES)?);
@@ -238,11 +320,14 @@ impl Reader<'_> {
         if let Some(exposure) = &table.exposure {
             scene.develop.exposure = self.number("exposure", exposure, limits::EXPOSURE)?;
         }
-        scene.develop.tonemap = match table.tonemap {
-            None | Some(TonemapName::Clamp) => Tonemap::Clamp,
-            Some(TonemapName::Reinhard) => Tonemap::Reinhard,
-            Some(TonemapName::Aces) => Tonemap::Aces,
-        };
+        if let Some(tonemap) = &table.tonemap {
+            let names = [
+                ("clamp", Tonemap::Clamp),
+                ("reinhard", Tonemap::Reinhard),
+                ("aces", Tonemap::Aces),
+            ];
+            scene.develop.tonemap = self.one_of("tonemap", tonemap, &names)?;
+        }
         Ok(())
     }
 
@@ -256,7 +341,10 @@ impl Reader<'_> {
             lens.focus_distance = Some(distance);
         }
         if let Some(shutter) = &camera.shutter {
-            let times: Vec<f32> = shutter.get_ref().iter().map(|time| *time as f32).collect();
+            let times: Vec<f32> = match shutter.get_ref() {
+                Value::List(times, None) => times.iter().map(|time| *time as f32).collect(),
+                _ => Vec::new(),
+            };
             match times[..] {
                 [open, close]
                     if limits::TIME.holds(open) && limits::TIME.holds(close) && open <= close =>
@@ -321,7 +409,7 @@ impl Reader<'_> {
             Some(strength) => self.number("strength", strength, limits::STRENGTH)?,
             None => 1.0,
         };
-        let optional = |name, value: &Option<Spanned<Vec<f64>>>| {
+        let optional = |name, value: &Option<Spanned<Value>>| {
             value
                 .as_ref()
                 .map(|value| self.radiance(name, value, strength))
@@ -385,12 +473,12 @@ impl Reader<'_> {
         let image = sky
             .image
             .as_ref()
-            .map(|file| {
+            .map(|file| -> Result<_> {
                 let path = self
                     .path
                     .parent()
                     .unwrap_or(Path::new(""))
-                    .join(file.get_ref());
+                    .join(self.text("image", file)?);
                 environment::load(&path, strength).map_err(|error| match error {
                     Error::Scene(inner) => self
                         .wrong(file, inner.to_string(), "named here", inner.help)
@@ -424,7 +512,7 @@ impl Reader<'_> {
                 )
                 .into());
         }
-        let number = |name, value: &Option<Spanned<f64>>, range, default| match value {
+        let number = |name, value: &Option<Spanned<Value>>, range, default| match value {
             Some(value) => self.number(name, value, range),
             None => Ok(default),
         };
@@ -446,7 +534,14 @@ impl Reader<'_> {
     /// A material, and the thickness of its shell if it is hollow.
     fn material(&self, table: &Spanned<MaterialTable>) -> Result<(Material, Option<f32>)> {
         let material = table.get_ref();
-        let kind = material.kind;
+        let kinds = [
+            ("diffuse", MaterialKind::Diffuse),
+            ("metal", MaterialKind::Metal),
+            ("glass", MaterialKind::Glass),
+            ("emissive", MaterialKind::Emissive),
+        ];
+        let kind = self.one_of("kind", &material.kind, &kinds)?;
+        let kind_name = self.text("kind", &material.kind)?;
         // Each key with the kind that has it.
         let keys: [(&str, bool, Option<std::ops::Range<usize>>); 6] = [
             (
@@ -487,7 +582,7 @@ impl Reader<'_> {
                 return Err(self
                     .wrong(
                         &Spanned::new(span, ()),
-                        format!("a material of kind {kind:?} has no {name}").to_lowercase(),
+                        format!("a material of kind {kind_name} has no {name}"),
                         "not for this kind",
                         "diffuse has color; metal has color and roughness; glass has index, absorption and thickness;                          emissive has color and strength",
                     )
@@ -550,39 +645,103 @@ impl Reader<'_> {
         })
     }
 
-    fn whole(&self, name: &str, value: &Spanned<i64>, low: u32, high: u32) -> Result<u32> {
-        u32::try_from(*value.get_ref())
-            .ok()
-            .filter(|whole| (low..=high).contains(whole))
-            .ok_or_else(|| {
-                self.wrong(
-                    value,
-                    format!("{name} = {} is not possible", value.get_ref()),
-                    "out of range",
-                    format!("give a whole number from {low} to {high}"),
-                )
-                .into()
-            })
+    /// What a value of this name may not be.
+    fn not_a(&self, name: &str, value: &Spanned<Value>, wanted: &str) -> Error {
+        let (said, value_kind) = (value.get_ref().said(), value.get_ref());
+        let help = match value_kind {
+            Value::Text(text)
+                if text.trim().parse::<f64>().is_ok() && wanted.contains("number") =>
+            {
+                "write it without quotes".into()
+            }
+            Value::Whole(_) | Value::Number(_) if wanted == "a text" => "write it in quotes".into(),
+            _ => format!("give {wanted}"),
+        };
+        self.wrong(
+            value,
+            format!("{name} is {said}, not {wanted}"),
+            format!("not {wanted}"),
+            help,
+        )
+        .into()
     }
 
-    fn number(&self, name: &str, value: &Spanned<f64>, range: Range) -> Result<f32> {
-        let number = *value.get_ref() as f32;
-        if range.holds(number) {
-            return Ok(number);
+    fn text<'v>(&self, name: &str, value: &'v Spanned<Value>) -> Result<&'v str> {
+        match value.get_ref() {
+            Value::Text(text) => Ok(text),
+            _ => Err(self.not_a(name, value, "a text")),
+        }
+    }
+
+    /// What one of these texts stands for.
+    fn one_of<T: Copy>(
+        &self,
+        name: &str,
+        value: &Spanned<Value>,
+        texts: &[(&str, T)],
+    ) -> Result<T> {
+        let text = self.text(name, value)?;
+        if let Some((_, meaning)) = texts.iter().find(|(known, _)| *known == text) {
+            return Ok(*meaning);
+        }
+        let known: Vec<String> = texts
+            .iter()
+            .map(|(text, _)| format!("\"{text}\""))
+            .collect();
+        Err(self
+            .wrong(
+                value,
+                format!("there is no {name} \"{}\"", shown(text)),
+                "not known",
+                format!("give one of {}", known.join(", ")),
+            )
+            .into())
+    }
+
+    fn whole(&self, name: &str, value: &Spanned<Value>, low: u32, high: u32) -> Result<u32> {
+        let out_of_range = || {
+            self.wrong(
+                value,
+                format!("{name} = {} is not possible", value.get_ref().said()),
+                "out of range",
+                format!("give a whole number from {low} to {high}"),
+            )
+            .into()
+        };
+        match value.get_ref() {
+            Value::Whole(whole) => u32::try_from(*whole)
+                .ok()
+                .filter(|whole| (low..=high).contains(whole))
+                .ok_or_else(out_of_range),
+            // Integers that have no room in 64 bits.
+            Value::Number(number) if number.abs() >= 1e18 => Err(out_of_range()),
+            _ => Err(self.not_a(name, value, "a whole number")),
+        }
+    }
+
+    fn number(&self, name: &str, value: &Spanned<Value>, range: limits::Range) -> Result<f32> {
+        let Some(number) = value.get_ref().number() else {
+            return Err(self.not_a(name, value, "a number"));
+        };
+        if range.holds(number as f32) {
+            return Ok(number as f32);
         }
         Err(self
             .wrong(
                 value,
-                format!("{name} = {} is not possible", value.get_ref()),
+                format!("{name} = {} is not possible", said(number)),
                 "out of range",
                 format!("give a number {range}"),
             )
             .into())
     }
 
-    fn world(&self, file: &File, shutter: (f32, f32)) -> Result<World> {
+    fn world(&self, file: &File, batches: &[Batch], shutter: (f32, f32)) -> Result<World> {
         let mut world = World::default();
-        let mut ids = BTreeMap::new();
+        let mut known = Known {
+            ids: BTreeMap::new(),
+            shutter,
+        };
         for (name, material) in &file.materials {
             let (made, thickness) = self.material(material)?;
             let id = world.add_named_material(name, made);
@@ -590,73 +749,27 @@ impl Reader<'_> {
                 let inner = Material::bubble(made.parameter, made.volume);
                 (thickness, world.add_named_material(name, inner))
             });
-            ids.insert(name.as_str(), (id, hollow));
+            known.ids.insert(name, (id, hollow));
         }
-        let mut default_id = None;
+        let mut grey = None;
         for table in &file.spheres {
-            let table = table.get_ref();
-            let (id, hollow) = match &table.material {
-                Some(name) => *ids.get(name.get_ref().as_str()).ok_or_else(|| {
-                    let known: Vec<&str> = ids.keys().copied().collect();
-                    self.wrong(
-                        name,
-                        format!("there is no material \"{}\"", name.get_ref()),
-                        "not defined",
-                        if known.is_empty() {
-                            format!("define it: [materials.{}] with kind = \"diffuse\" and color = [r, g, b]", name.get_ref())
-                        } else {
-                            format!("the scene defines {}", known.join(", "))
-                        },
-                    )
-                })?,
-                None => {
-                    let grey = Material::diffuse(Vec3::splat(0.5));
-                    (
-                        *default_id.get_or_insert_with(|| world.add_material(grey)),
-                        None,
-                    )
+            self.sphere(table, &known)?.add_to(&mut world, &mut grey);
+        }
+        for some in batches.chunks(AT_ONCE) {
+            let read: Vec<Result<Vec<Row>>> = some
+                .par_iter()
+                .map(|batch| self.batch(batch, &known))
+                .collect();
+            for rows in read {
+                for row in rows? {
+                    row.add_to(&mut world, &mut grey);
                 }
-            };
-            let sphere = Sphere::new(
-                self.vector("center", &table.center)?,
-                self.number("radius", &table.radius, limits::RADIUS)?,
-            );
-            let velocity = match &table.velocity {
-                Some(velocity) => self.vector("velocity", velocity)?,
-                None => Vec3::ZERO,
-            };
-            self.is_within(&table.center, &sphere, velocity, shutter)?;
-            let mut add = |sphere, id| {
-                if velocity == Vec3::ZERO {
-                    world.add(sphere, id);
-                } else {
-                    world.add_moving(sphere, id, velocity);
-                }
-            };
-            add(sphere, id);
-            if let Some((thickness, inner)) = hollow {
-                let Some(radius) = limits::hollow(sphere.radius(), thickness) else {
-                    let (message, label, help) = if sphere.radius() <= thickness {
-                        (
-                            "leaves no hollow",
-                            "not more than the thickness",
-                            "give a larger radius, or a material without thickness for solid glass",
-                        )
-                    } else {
-                        (
-                            "is too thin for a 32-bit float",
-                            "the hollow's radius rounds to this",
-                            "give a thickness of at least a millionth of the radius",
-                        )
-                    };
-                    let message = format!("the shell of this sphere, {thickness} thick, {message}");
-                    return Err(self.wrong(&table.radius, message, label, help).into());
-                };
-                add(Sphere::new(sphere.center(), radius), inner);
             }
+            self.count(&world)?;
         }
         if let Some(particles) = &file.particles {
             world.append(&self.particles(&particles.file)?);
+            self.count(&world)?;
         }
         if world.spheres.is_empty() {
             return Err(SceneError::without_place(
@@ -669,8 +782,131 @@ impl Reader<'_> {
         Ok(world)
     }
 
-    fn particles(&self, file: &Spanned<String>) -> Result<World> {
-        let named = Path::new(file.get_ref());
+    fn count(&self, world: &World) -> Result<()> {
+        if world.spheres.len() <= limits::MAX_SPHERES {
+            return Ok(());
+        }
+        Err(SceneError::without_place(
+            self.path,
+            format!("the scene has more than {} spheres", limits::MAX_SPHERES),
+            "render it in parts",
+        )
+        .into())
+    }
+
+    /// Some `[[sphere]]` tables.
+    fn batch(&self, batch: &Batch, known: &Known<'_>) -> Result<Vec<Row>> {
+        let last = &self.text[batch.last..batch.range.end];
+        if last.len() > MAX_TABLE {
+            let before = Batch {
+                range: batch.range.start..batch.last,
+                last: batch.range.start,
+            };
+            if !before.range.is_empty() {
+                self.batch(&before, known)?;
+            }
+            return Err(self.long_table(batch.last, last));
+        }
+        let pieces = [Piece::whole(batch.range.clone())];
+        let reader = Reader {
+            pieces: &pieces,
+            ..*self
+        };
+        let tables: Spheres = reader.read(&self.text[batch.range.clone()])?;
+        let rows = tables
+            .sphere
+            .iter()
+            .map(|table| reader.sphere(table, known));
+        rows.collect()
+    }
+
+    /// What is wrong with a table that is too long. A bracket or a text that is not closed takes in
+    /// what follows; its beginning may say so.
+    fn long_table(&self, start: usize, table: &str) -> Error {
+        let mut end = MAX_TABLE;
+        while !table.is_char_boundary(end) {
+            end -= 1;
+        }
+        let pieces = [Piece::whole(start..start + end)];
+        let reader = Reader {
+            pieces: &pieces,
+            ..*self
+        };
+        if let Err(Error::Scene(error)) = reader.read::<Spheres>(&table[..end])
+            && let Some(place) = &error.place
+            && place.span.end < start + end
+        {
+            return Error::Scene(error);
+        }
+        let message = format!("this [[sphere]] table has more than {MAX_TABLE} bytes");
+        let help = "close the text that is open, or make it shorter";
+        let span = 0.."[[sphere]]".len();
+        reader.wrong_at(span, message, "begins here", help).into()
+    }
+
+    fn sphere(&self, table: &Spanned<SphereTable>, known: &Known<'_>) -> Result<Row> {
+        let table = table.get_ref();
+        let (material, hollow) = match &table.material {
+            Some(value) => {
+                let name = self.text("material", value)?;
+                let (id, hollow) = *known.ids.get(name).ok_or_else(|| {
+                    let names: Vec<&str> = known.ids.keys().copied().collect();
+                    self.wrong(
+                        value,
+                        format!("there is no material \"{}\"", shown(name)),
+                        "not defined",
+                        if names.is_empty() {
+                            format!("define it: [materials.{}] with kind = \"diffuse\" and color = [r, g, b]", shown(name))
+                        } else {
+                            format!("the scene defines {}", shown(&names.join(", ")))
+                        },
+                    )
+                })?;
+                (Some(id), hollow)
+            }
+            None => (None, None),
+        };
+        let sphere = Sphere::new(
+            self.vector("center", &table.center)?,
+            self.number("radius", &table.radius, limits::RADIUS)?,
+        );
+        let velocity = match &table.velocity {
+            Some(velocity) => self.vector("velocity", velocity)?,
+            None => Vec3::ZERO,
+        };
+        self.is_within(&table.center, &sphere, velocity, known.shutter)?;
+        let hollow = hollow.map(|(thickness, inner)| {
+            let Some(radius) = limits::hollow(sphere.radius(), thickness) else {
+                let (message, label, help) = if sphere.radius() <= thickness {
+                    (
+                        "leaves no hollow",
+                        "not more than the thickness",
+                        "give a larger radius, or a material without thickness for solid glass",
+                    )
+                } else {
+                    (
+                        "is too thin for a 32-bit float",
+                        "the hollow's radius rounds to this",
+                        "give a thickness of at least a millionth of the radius",
+                    )
+                };
+                let thickness = said(thickness.into());
+                let message = format!("the shell of this sphere, {thickness} thick, {message}");
+                return Err(self.wrong(&table.radius, message, label, help));
+            };
+            Ok((Sphere::new(sphere.center(), radius), inner))
+        });
+        Ok(Row {
+            sphere,
+            material,
+            velocity,
+            hollow: hollow.transpose()?,
+        })
+    }
+
+    fn particles(&self, file: &Spanned<Value>) -> Result<World> {
+        let name = self.text("file", file)?;
+        let named = Path::new(name);
         let path = self.path.parent().unwrap_or(Path::new("")).join(named);
         if !molecule::is_molecule(&super::extension(&path)) {
             return Err(self
@@ -678,7 +914,7 @@ impl Reader<'_> {
                     file,
                     format!(
                         "{}: not a kind of particle file that spherule reads",
-                        file.get_ref()
+                        shown(name)
                     ),
                     "unknown kind",
                     "give a .pdb, .ent or .xyz file",
@@ -705,20 +941,20 @@ impl Reader<'_> {
                 None => Vec3::Y,
             },
             vertical_fov: match &table.vertical_fov {
-                Some(fov) if limits::is_vertical_fov(*fov.get_ref()) => *fov.get_ref(),
-                Some(fov) => {
-                    return Err(self
-                        .wrong(
-                            fov,
-                            format!(
-                                "a vertical_fov of {} degrees is not possible",
-                                fov.get_ref()
-                            ),
-                            "out of range",
-                            "give an angle in degrees above 0 and below 180, for example 40",
-                        )
-                        .into());
-                }
+                Some(fov) => match fov.get_ref().number() {
+                    Some(degrees) if limits::is_vertical_fov(degrees) => degrees,
+                    Some(degrees) => {
+                        return Err(self
+                            .wrong(
+                                fov,
+                                format!("vertical_fov = {} is not possible", said(degrees)),
+                                "out of range",
+                                "give an angle in degrees above 0 and below 180, for example 40",
+                            )
+                            .into());
+                    }
+                    None => return Err(self.not_a("vertical_fov", fov, "a number")),
+                },
                 None => View::DEFAULT_FOV,
             },
         };
@@ -744,12 +980,12 @@ impl Reader<'_> {
         Ok(view)
     }
 
-    fn side(&self, name: &str, value: &Spanned<i64>) -> Result<u32> {
+    fn side(&self, name: &str, value: &Spanned<Value>) -> Result<u32> {
         self.whole(name, value, 1, limits::MAX_IMAGE_SIDE)
     }
 
     /// A vector in space.
-    fn vector(&self, name: &str, value: &Spanned<Vec<f64>>) -> Result<Vec3> {
+    fn vector(&self, name: &str, value: &Spanned<Value>) -> Result<Vec3> {
         let vector = self.three(name, value)?;
         if !limits::COORDINATE.holds_all(vector) {
             return Err(self
@@ -770,7 +1006,7 @@ impl Reader<'_> {
     /// Refuses a sphere that reaches, or moves, too far.
     fn is_within(
         &self,
-        center: &Spanned<Vec<f64>>,
+        center: &Spanned<Value>,
         sphere: &Sphere,
         velocity: Vec3,
         shutter: (f32, f32),
@@ -794,12 +1030,27 @@ impl Reader<'_> {
     }
 
     /// Three finite numbers.
-    fn three(&self, name: &str, value: &Spanned<Vec<f64>>) -> Result<Vec3> {
-        let Ok([x, y, z]) = <[f64; 3]>::try_from(value.get_ref().as_slice()) else {
+    fn three(&self, name: &str, value: &Spanned<Value>) -> Result<Vec3> {
+        let numbers = match value.get_ref() {
+            Value::List(numbers, None) => numbers,
+            Value::List(_, Some(other)) => {
+                return Err(self
+                    .wrong(
+                        value,
+                        format!("{name} holds {other}, not three numbers"),
+                        "not three numbers",
+                        "give three numbers: [x, y, z], or [red, green, blue]",
+                    )
+                    .into());
+            }
+            _ => return Err(self.not_a(name, value, "a list of three numbers")),
+        };
+        let Ok([x, y, z]) = <[f64; 3]>::try_from(&numbers[..]) else {
+            let count = count_of(numbers.len(), "number");
             return Err(self
                 .wrong(
                     value,
-                    format!("{name} has {} numbers", value.get_ref().len()),
+                    format!("{name} has {count}"),
                     "not three",
                     "give three numbers: [x, y, z], or [red, green, blue]",
                 )
@@ -820,7 +1071,7 @@ impl Reader<'_> {
     }
 
     /// Red, green and blue, each in the range.
-    fn color(&self, name: &str, value: &Spanned<Vec<f64>>, range: Range) -> Result<Vec3> {
+    fn color(&self, name: &str, value: &Spanned<Value>, range: limits::Range) -> Result<Vec3> {
         let color = self.three(name, value)?;
         if range.holds_all(color) {
             return Ok(color);
@@ -847,7 +1098,7 @@ impl Reader<'_> {
     }
 
     /// A radiance times a strength.
-    fn radiance(&self, name: &str, value: &Spanned<Vec<f64>>, strength: f32) -> Result<Vec3> {
+    fn radiance(&self, name: &str, value: &Spanned<Value>, strength: f32) -> Result<Vec3> {
         let radiance = self.color(name, value, limits::RADIANCE)? * strength;
         if limits::RADIANCE.holds_all(radiance) {
             return Ok(radiance);
@@ -872,16 +1123,70 @@ impl Reader<'_> {
         label: impl Into<String>,
         help: impl Into<String>,
     ) -> Box<SceneError> {
+        self.wrong_at(value.span(), message, label, help)
+    }
+
+    /// What is wrong with these bytes of what was parsed.
+    fn wrong_at(
+        &self,
+        span: Range<usize>,
+        message: impl Into<String>,
+        label: impl Into<String>,
+        help: impl Into<String>,
+    ) -> Box<SceneError> {
         Box::new(SceneError {
             path: self.path.into(),
             message: message.into(),
             help: help.into(),
             place: Some(Place {
-                text: self.text.clone(),
-                span: value.span(),
+                text: self.text.to_owned(),
+                span: self.in_file(span.start)
+                    ..self.in_file(span.end).max(self.in_file(span.start)),
                 label: label.into(),
             }),
         })
+    }
+
+    /// Where in the file a byte is that was parsed.
+    fn in_file(&self, at: usize) -> usize {
+        let piece = self.pieces.iter().rev().find(|piece| piece.start <= at);
+        piece.map_or(at, |piece| piece.range.start + (at - piece.start))
+    }
+}
+
+/// A material's index, and for hollow spheres how thick they are and the index of what is inside.
+type NamedMaterial = (u32, Option<(f32, u32)>);
+
+/// What the spheres of a scene refer to.
+struct Known<'a> {
+    ids: BTreeMap<&'a str, NamedMaterial>,
+    shutter: (f32, f32),
+}
+
+/// A sphere as its table says.
+struct Row {
+    sphere: Sphere,
+    /// Its material; `None` for a grey.
+    material: Option<u32>,
+    velocity: Vec3,
+    /// The hollow in it.
+    hollow: Option<(Sphere, u32)>,
+}
+
+impl Row {
+    /// `grey` is the material of spheres without one, once there is one.
+    fn add_to(self, world: &mut World, grey: &mut Option<u32>) {
+        let id = self.material.unwrap_or_else(|| {
+            let diffuse = Material::diffuse(Vec3::splat(0.5));
+            *grey.get_or_insert_with(|| world.add_material(diffuse))
+        });
+        for (sphere, id) in std::iter::once((self.sphere, id)).chain(self.hollow) {
+            if self.velocity == Vec3::ZERO {
+                world.add(sphere, id);
+            } else {
+                world.add_moving(sphere, id, self.velocity);
+            }
+        }
     }
 }
 
@@ -937,7 +1242,24 @@ radius = 100
     fn each_mistake_is_refused_at_its_line() {
         let cases = [
             ("width = 4", "width = 0", 3, "width = 0"),
-            ("width = 4", "width = 4.5", 3, "invalid type"),
+            (
+                "width = 4",
+                "width = 4.5",
+                3,
+                "width is 4.5, not a whole number",
+            ),
+            (
+                "width = 4",
+                "width = 99999999999999999999",
+                3,
+                "width = 1e20",
+            ),
+            (
+                "width = 4",
+                "width = [4]",
+                3,
+                "width is a list, not a whole",
+            ),
             ("width = 4", "wdith = 4", 3, "unknown field"),
             ("width = 4", "width = 99999", 3, "99999"),
             ("[0, 0.5, 1]", "[0, -0.5, 1]", 5, "below zero"),
@@ -971,16 +1293,61 @@ radius = 100
                 7,
                 "along the view",
             ),
-            ("vertical_fov = 90", "vertical_fov = 180", 10, "180 degrees"),
-            ("vertical_fov = 90", "vertical_fov = nan", 10, "NaN degrees"),
-            ("\"diffuse\"", "\"mirror\"", 13, "unknown variant"),
+            (
+                "vertical_fov = 90",
+                "vertical_fov = 180",
+                10,
+                "vertical_fov = 180",
+            ),
+            (
+                "vertical_fov = 90",
+                "vertical_fov = nan",
+                10,
+                "vertical_fov = NaN",
+            ),
+            (
+                "\"diffuse\"",
+                "\"mirror\"",
+                13,
+                "there is no kind \"mirror\"",
+            ),
             ("color = [1, 0, 0]", "color = [1.5, 0, 0]", 14, "above one"),
             ("radius = 0.5", "radius = 0", 18, "radius = 0"),
             ("radius = 0.5", "radius = -1", 18, "radius = -1"),
             ("radius = 0.5", "radius = nan", 18, "radius = NaN"),
-            ("radius = 0.5", "radius = 1e-60", 18, "radius = 0.000"),
-            ("radius = 0.5", "radius = \"0.5\"", 18, "invalid type"),
-            ("radius = 0.5", "radius = 1e-40", 18, "radius = 0.000"),
+            ("radius = 0.5", "radius = 1e-60", 18, "radius = 1e-60"),
+            (
+                "radius = 0.5",
+                "radius = \"0.5\"",
+                18,
+                "radius is the text \"0.5\", not a number",
+            ),
+            ("radius = 0.5", "radius = 1e300", 18, "radius = 1e300"),
+            (
+                "center = [0, 0, -3]",
+                "center = [0, true, -3]",
+                17,
+                "center holds true, not three numbers",
+            ),
+            (
+                "center = [0, 0, -3]",
+                "center = {x = 0}",
+                17,
+                "center is a table, not a list of three numbers",
+            ),
+            (
+                "center = [0, 0, -3]",
+                "center = [1]",
+                17,
+                "center has 1 number",
+            ),
+            (
+                "material = \"red\"",
+                "material = 1979-05-27",
+                19,
+                "material is a table, not a text",
+            ),
+            ("radius = 0.5", "radius = 1e-40", 18, "radius = 1e-40"),
             ("radius = 100", "radius = 1e18", 22, "beyond 1e18"),
             ("[0, 0.5, 1]", "[0, 1e16, 1]", 5, "above 1e15"),
             (
@@ -1026,6 +1393,7 @@ radius = 100
     #[test]
     fn each_key_of_the_effects_refuses_what_it_cannot_be() {
         let cases = [
+            ("camera = 5", "this is the whole number `5`, not a table"),
             ("[image]\nsamples = 0", "samples = 0"),
             ("[image]\nsamples = 65537", "65537"),
             ("[image]\nmax_bounces = -1", "max_bounces = -1"),
@@ -1033,8 +1401,20 @@ radius = 100
             ("[image]\nseed = -5", "seed = -5"),
             ("[image]\nexposure = 100", "exposure = 100"),
             ("[image]\nexposure = nan", "exposure = NaN"),
-            ("[image]\ntonemap = \"film\"", "unknown variant"),
-            ("[image]\ntransparent = 1", "invalid type"),
+            (
+                "[image]\ntonemap = \"film\"",
+                "there is no tonemap \"film\"",
+            ),
+            (
+                "[image]\ntransparent = 1",
+                "transparent is 1, not true or false",
+            ),
+            (
+                "[image]\nsamples = \"4\"",
+                "samples is the text \"4\", not a whole number",
+            ),
+            ("[sky]\nimage = 3", "image is 3, not a text"),
+            ("[materials.m]\nkind = true", "kind is true, not a text"),
             (
                 "[camera]\neye = [0, 0, 9]\ntarget = [0, 0, 0]\naperture = -1",
                 "aperture = -1",
@@ -1228,5 +1608,121 @@ radius = 100
     fn a_scene_without_spheres_is_refused() {
         let error = read("[image]\nwidth = 3").expect_err("no spheres");
         assert!(error.to_string().contains("no spheres"));
+    }
+
+    /// Where `[[sphere]]` tables stand among others, and how they are written.
+    #[test]
+    fn a_file_is_split_at_its_headers() {
+        let scene = read(
+            "\u{feff}[[sphere]] # [[sphere]]\r\ncenter = [ # a [ comment\r\n  1,\r\n[].x, ]\r\n",
+        );
+        assert!(scene.is_err());
+        let scene = read(concat!(
+            "\u{feff}[[sphere]] # [[sphere]]\r\ncenter = [ # a [ comment\r\n  1, 0,\r\n0 ]\r\nradius = 1\r\n",
+            "  [[ 'sphere' ]]\r\ncenter = [2, 0, 0]\r\nradius = 1\r\nmaterial = \"a [[sphere]]\"\r\n",
+            "[materials.\"a [[sphere]]\"]\r\nkind = \"glass\"\r\n",
+            "[[\"sphere\"]]\r\ncenter = [3, 0, 0]\r\nradius = 1\r\nmaterial = \"\"\"\r\nb\\n[[sphere]]\"\"\"\r\n",
+            "[image]\r\nwidth = 3\r\n",
+            "[materials.\"b\\n[[sphere]]\"]\r\nkind = \"glass\"\r\n",
+            "[[sphere]]\r\ncenter = [4, 0, 0]\r\nradius = 1",
+        ))
+        .expect("a scene");
+        let places: Vec<f32> = scene.world.spheres.iter().map(|s| s.center().x).collect();
+        assert_eq!(places, [1.0, 2.0, 3.0, 4.0]);
+        assert_eq!(scene.world.material_ids, [2, 0, 1, 2]);
+        assert_eq!(scene.width, 3);
+        let list = "sphere = [{ center = [0, 0, 0], radius = 1 }]\n";
+        assert_eq!(read(list).expect("a scene").world.spheres.len(), 1);
+    }
+
+    /// A mistake among very many spheres is found, and a bracket that is left open does not take in
+    /// all of them.
+    #[test]
+    fn among_many_spheres_a_mistake_is_found() {
+        let sphere = |index: usize| format!("[[sphere]]\ncenter = [{index}, 0, 0]\nradius = 1\n");
+        let count = 10_000;
+        let many: Vec<String> = (0..count).map(sphere).collect();
+        let spheres = read(&many.concat()).expect("a scene").world.spheres;
+        assert!((0..count).all(|index| spheres[index].center().x == index as f32));
+        assert_eq!(spheres.len(), count);
+        for (wrong, line, word) in [
+            ("radius = -1", 3, "radius = -1"),
+            ("radius = 1\nradius = 2", 4, "duplicate key"),
+            ("raduis = 1", 3, "unknown field"),
+            ("radius = [1", 4, ""),
+            ("radius = \"\"\"1", 1, "more than 65536 bytes"),
+            ("radius = 1 2", 3, ""),
+            (
+                "radius = 1\n[sphere.more]\na = 1",
+                4,
+                "this is a table, not a list",
+            ),
+            ("radius = 1\n[image]\nsphere = 1", 5, "unknown field"),
+        ] {
+            let mut many = many.clone();
+            many[7000] = many[7000].replace("radius = 1", wrong);
+            let Err(Error::Scene(error)) = read(&many.concat()) else {
+                panic!("{wrong} is read")
+            };
+            assert!(error.message.contains(word), "{wrong}: {}", error.message);
+            let (found, _) = error.place.as_ref().expect("a place").line_column();
+            let expected = 3 * 7000 + line;
+            // A bracket that is open is missed in the next line.
+            assert!(
+                (expected..=expected + 1).contains(&found),
+                "{wrong}: {found}"
+            );
+        }
+        let both = format!(
+            "sphere = [{{ center = [0, 0, 0], radius = 1 }}]\n{}",
+            many[0]
+        );
+        let error = read(&both).expect_err("two kinds").to_string();
+        assert!(
+            error.starts_with("test.toml:2:1: there is a list of spheres"),
+            "{error}"
+        );
+        let long = format!("{}x = \"{}\"\n", many[0], "y".repeat(MAX_TEXT));
+        let error = read(&format!(
+            "[image]\n{}\n{long}",
+            "# c\n".repeat(MAX_TEXT / 4)
+        ));
+        assert!(
+            error
+                .expect_err("too long")
+                .to_string()
+                .contains("longer than")
+        );
+        assert!(
+            read(&long)
+                .expect_err("too long")
+                .to_string()
+                .contains("more than 65536 bytes")
+        );
+    }
+
+    /// Names come out of files as they are, and go to a terminal as it can show them.
+    #[test]
+    fn messages_hold_no_escapes_and_no_megabytes() {
+        let long = "n".repeat(5_000_000);
+        let sphere = "[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\n";
+        for text in [
+            format!("{sphere}material = \"\\u001b[31m\u{202e}\""),
+            format!("{sphere}material = \"{long}\""),
+            format!("{sphere}material = \"a\"\n[materials.\"\\u001b{long}\"]\nkind = \"glass\""),
+            format!("\"\\u001b{long}\" = 1"),
+            format!("[image]\n\"\\u001b{long}\" = 1"),
+            format!("[image]\ntonemap = \"\\u001b{long}\""),
+            format!("[image]\nwidth = \"\\u001b{long}\""),
+            format!("{sphere}[sky]\nimage = \"\\u001b{long}\""),
+            format!("{sphere}[particles]\nfile = \"\\u001b{long}.pdb\""),
+            format!("{sphere}[particles]\nfile = \"\\u001b{long}\""),
+        ] {
+            let error = read(&text).expect_err("a refusal");
+            let said = format!("{error}{}", error.help());
+            let start = &text[..text.len().min(90)];
+            assert!(said.len() < 1500, "{start}: {} bytes", said.len());
+            assert!(!said.contains(['\u{1b}', '\u{202e}']), "{start}: {said:?}");
+        }
     }
 }

@@ -1,4 +1,4 @@
-//! OpenEXR's `.exr` files: scan lines or tiles, of the first part that has R, G and B, at full
+//! `.exr` files: scan lines or tiles, of the first part that has R, G and B, at full
 //! resolution. The image is the display window; of it, the data window is filled.
 
 use std::io::{BufRead, Seek};
