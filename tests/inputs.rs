@@ -1,0 +1,86 @@
+//! Inputs of unknown origin, through the command line: refused with exit code 2 and at once, or
+//! drawn; and nothing of them reaches the terminal as anything but text.
+
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use assert_cmd::Command;
+use predicates::str::contains;
+
+fn spherule() -> Command {
+    Command::cargo_bin("spherule").expect("the command")
+}
+
+fn render(input: &Path, output: &Path) -> Command {
+    let mut command = spherule();
+    command
+        .args(["render", "--device", "cpu", "--size", "40x30", "-o"])
+        .args([output, input])
+        .timeout(Duration::from_secs(120));
+    command
+}
+
+#[test]
+fn skies_that_claim_a_huge_window_are_refused_at_once() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (scene, output) = (folder.path().join("s.toml"), folder.path().join("o.png"));
+    for name in ["sky_dwa_huge_window.exr", "sky_dwa_slow.exr"] {
+        let sky = Path::new(env!("CARGO_MANIFEST_DIR"))
+            .join("tests/inputs")
+            .join(name);
+        let text = format!(
+            "[sky]\nimage = '{}'\n[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\n",
+            sky.display()
+        );
+        std::fs::write(&scene, text).expect("a scene");
+        let start = Instant::now();
+        render(&scene, &output)
+            .assert()
+            .code(2)
+            .stderr(contains("data window claims"));
+        // Instead of minutes; a gigabyte would be seen by the time that it takes, too.
+        assert!(start.elapsed() < Duration::from_secs(20));
+        assert!(!output.exists());
+    }
+}
+
+#[test]
+fn nothing_of_a_name_is_obeyed_by_a_terminal() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let output = folder.path().join("o.png");
+    let scene = folder.path().join("\u{1b}[31m\u{202e}\u{9b}J.toml");
+    let glass = "[materials.\"\\u001b[2J\"]\nkind = \"glass\"\n";
+    let sphere = "[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\nmaterial = ";
+    for material in ["\"\\u001b[2J\"", "\"\u{202e}\\u0007\"", "\"\u{9b}2J\"", "1"] {
+        std::fs::write(&scene, format!("{glass}{sphere}{material}\n")).expect("a scene");
+        let explain = |command: &mut Command| {
+            let said = command.output().expect("an end");
+            let said = [said.stdout, said.stderr].concat();
+            let said = String::from_utf8(said).expect("UTF-8");
+            let is_obeyed = |c: char| c.is_control() && c != '\n' || c == '\u{202e}';
+            assert!(!said.contains(is_obeyed), "{said:?}");
+            assert!(said.contains("\\u{1b}"), "{said:?}");
+        };
+        explain(&mut render(&scene, &output));
+        explain(
+            spherule()
+                .args(["explain", "--device", "cpu", "--no-costs"])
+                .arg(&scene),
+        );
+    }
+}
+
+/// They took minutes; now as long as one does.
+#[test]
+fn many_atoms_in_one_place_are_drawn() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let atoms = folder.path().join("atoms.xyz");
+    std::fs::write(&atoms, format!("32000\n\n{}", "C 0 0 0\n".repeat(32_000))).expect("a file");
+    let one = folder.path().join("one.xyz");
+    std::fs::write(&one, "1\n\nC 0 0 0\n").expect("a file");
+    let (many, single) = (folder.path().join("m.png"), folder.path().join("1.png"));
+    render(&atoms, &many).assert().success();
+    render(&one, &single).assert().success();
+    let [many, single] = [many, single].map(|path| std::fs::read(path).expect("a picture"));
+    assert!(many == single);
+}
