@@ -28,6 +28,15 @@ pub enum Error {
         found: String,
     },
 
+    /// There are adapters, and none has the name that was given.
+    #[error("no GPU adapter has a name that contains \"{name}\"; there is {}", found.join(", "))]
+    NoSuchAdapter {
+        /// The part of a name that was asked for.
+        name: String,
+        /// The names of those that there are.
+        found: Vec<String>,
+    },
+
     /// The adapter did not give a device.
     #[error("the adapter {adapter} refused a device: {reason}")]
     DeviceRefused {
@@ -164,6 +173,9 @@ impl Error {
                  needs no GPU), or use `--device cpu`, which needs none"
                     .into()
             }
+            Self::NoSuchAdapter { .. } => {
+                "give auto, gpu, cpu, or a part of one of these names; `spherule devices` says more of each".into()
+            }
             Self::DeviceRefused { .. } => {
                 "update the graphics driver, or use another device: `--device cpu` always works".into()
             }
@@ -205,8 +217,20 @@ impl Error {
     /// Whether the input is to blame (exit code 2) rather than the machine (exit code 1).
     #[must_use]
     pub fn is_input(&self) -> bool {
-        matches!(self, Self::Scene(_))
+        matches!(self, Self::Scene(_) | Self::NoSuchAdapter { .. })
     }
+}
+
+/// The one of `names` that `text` was probably meant to be.
+pub(crate) fn nearest<'a>(text: &str, names: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    let text = text.to_lowercase();
+    let likeness = |name: &str| strsim::jaro_winkler(&text, &name.to_lowercase());
+    names
+        .into_iter()
+        .map(|name| (likeness(name), name))
+        .filter(|(likeness, _)| *likeness > 0.75)
+        .max_by(|a, b| a.0.total_cmp(&b.0))
+        .map(|(_, name)| name)
 }
 
 /// What is wrong with a scene, and where.

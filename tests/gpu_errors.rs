@@ -33,7 +33,19 @@ fn assert_says(error: &Error, words: &[&str]) {
 fn no_adapter() {
     let choice = DeviceChoice::Named("no such adapter".into());
     let error = Device::open(&choice).expect_err("there is none of that name");
-    assert!(matches!(error, Error::NoAdapter { .. }), "{error:?}");
+    // It is the name that is wrong, where there are adapters of other names.
+    let there_are_others = !all_adapters().is_empty();
+    assert_eq!(
+        matches!(error, Error::NoSuchAdapter { .. }),
+        there_are_others,
+        "{error:?}"
+    );
+    assert_eq!(
+        matches!(error, Error::NoAdapter { .. }),
+        !there_are_others,
+        "{error:?}"
+    );
+    assert_eq!(error.is_input(), there_are_others);
     assert_says(&error, &["no such adapter"]);
 }
 

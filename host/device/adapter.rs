@@ -141,6 +141,17 @@ pub fn instance() -> wgpu::Instance {
 pub fn adapters(instance: &wgpu::Instance) -> Vec<wgpu::Adapter> {
     let mut adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::all()));
     adapters.sort_by_key(|adapter| rank(&adapter.get_info()));
+    for adapter in &adapters {
+        let info = adapter.get_info();
+        tracing::debug!(
+            "found {} ({:?}, {}), driver {} {}",
+            info.name,
+            info.device_type,
+            info.backend,
+            info.driver,
+            info.driver_info
+        );
+    }
     adapters
 }
 
@@ -157,7 +168,7 @@ pub fn list_adapters() -> Vec<AdapterReport> {
 ///
 /// # Errors
 ///
-/// [`Error::NoAdapter`] if a GPU was asked for and there is none like it.
+/// [`Error::NoAdapter`] if a GPU was asked for and there is none, [`Error::NoSuchAdapter`] if there are only others.
 pub(super) fn choose(choice: &DeviceChoice) -> Result<(Option<wgpu::Adapter>, String)> {
     if *choice == DeviceChoice::Cpu {
         return Ok((None, "asked for".into()));
@@ -188,22 +199,22 @@ pub(super) fn choose(choice: &DeviceChoice) -> Result<(Option<wgpu::Adapter>, St
         }
         None if *choice == DeviceChoice::Auto => Ok((None, "there is no real GPU".into())),
         None => {
-            let names: Vec<String> = adapters
+            let found: Vec<String> = adapters
                 .iter()
                 .map(|adapter| shown(&adapter.get_info().name).into_owned())
                 .collect();
+            let wanted = match choice {
+                DeviceChoice::Named(name) if !found.is_empty() => {
+                    let name = shown(name).into_owned();
+                    return Err(Error::NoSuchAdapter { name, found });
+                }
+                // The name may be right, and its driver is missing.
+                DeviceChoice::Named(name) => format!("has a name that contains \"{}\"", shown(name)),
+                DeviceChoice::Auto | DeviceChoice::Gpu | DeviceChoice::Cpu => "was found".into(),
+            };
             Err(Error::NoAdapter {
-                wanted: match choice {
-                    DeviceChoice::Named(part) => {
-                        format!("has a name that contains \"{}\"", shown(part))
-                    }
-                    _ => "was found".into(),
-                },
-                found: if names.is_empty() {
-                    "this system has no graphics driver that wgpu can use".into()
-                } else {
-                    format!("there is {}", names.join(", "))
-                },
+                wanted,
+                found: "this system has no graphics driver that wgpu can use".into(),
             })
         }
     }

@@ -127,7 +127,7 @@ impl Gpu {
     /// # Errors
     ///
     /// [`Error::NoAdapter`] if there is none ([`DeviceChoice::Auto`] takes no software adapter,
-    /// [`DeviceChoice::Cpu`] no adapter at all), [`Error::DeviceRefused`] if it does not open.
+    /// [`DeviceChoice::Cpu`] no adapter at all), [`Error::NoSuchAdapter`] if none has that name, [`Error::DeviceRefused`] if it does not open.
     pub fn open(choice: &DeviceChoice) -> Result<Self> {
         let (adapter, _) = adapter::choose(choice)?;
         let adapter = adapter.ok_or_else(|| Error::NoAdapter {
@@ -283,6 +283,7 @@ impl Gpu {
         }
 
         let during = format!("compiling the kernel {entry_point}");
+        let started = Instant::now();
         let made = self.watch.checked(&self.device, &during, || {
             let shader = if module.is_trusted() {
                 self.shader_module(&module.only(entry_point))
@@ -316,6 +317,12 @@ impl Gpu {
             Error::Validation { reason, .. } => invalid(reason),
             other => other,
         })?;
+        tracing::debug!(
+            "compiled {entry_point} of {}, {} KiB of SPIR-V: {:.1?}",
+            module.name(),
+            module.words().len() * 4 / 1024,
+            started.elapsed()
+        );
         let kernel = Kernel {
             name: entry_point.into(),
             pipeline,
@@ -458,6 +465,7 @@ impl Gpu {
         let nothing = vec![0xff; if data.is_empty() { size as usize } else { 0 }];
         let bytes = if data.is_empty() { &nothing } else { bytes };
         let during = format!("uploading {label}, {size} bytes");
+        tracing::trace!("{during}");
         let (raw, filled) = self.watch.checked(&self.device, &during, || {
             let raw = self.create_buffer(label, size, usage, true);
             // Where the allocation failed there is nothing to map, and the scope says why.
@@ -561,6 +569,11 @@ impl Gpu {
         self.watch
             .wait(&self.device, submission, self.timeout, &during)?;
         let host = started.elapsed();
+        tracing::trace!(
+            "ran {} in {workgroups:?} workgroups of {:?} threads: {host:.1?}",
+            kernel.name,
+            kernel.workgroup_size
+        );
         let device = match (timer, mapped) {
             (Some(timer), Some(mapped)) => timer.elapsed(&mapped),
             _ => None,

@@ -17,6 +17,8 @@ pub mod gpu;
 pub mod spirv;
 mod timer;
 
+use std::time::Instant;
+
 use crate::error::Result;
 use crate::plural::count_of;
 pub use adapter::{AdapterReport, DeviceChoice, list_adapters};
@@ -42,11 +44,22 @@ impl Device {
     /// The errors of [`Gpu::open`], where a GPU was asked for. [`DeviceChoice::Auto`] never
     /// fails: a GPU that does not open leaves the CPU.
     pub fn open(choice: &DeviceChoice) -> Result<(Self, String)> {
+        let started = Instant::now();
         let (adapter, reason) = adapter::choose(choice)?;
         let Some(adapter) = adapter else {
+            tracing::debug!(
+                "the device is the CPU ({reason}): {:.1?}",
+                started.elapsed()
+            );
             return Ok((Self::Cpu, reason));
         };
-        match Gpu::from_adapter(&adapter, GpuOptions::default()) {
+        let opened = Gpu::from_adapter(&adapter, GpuOptions::default());
+        tracing::debug!(
+            "opened {}: {:.1?}",
+            adapter.get_info().name,
+            started.elapsed()
+        );
+        match opened {
             Ok(gpu) => Ok((Self::Gpu(Box::new(gpu)), reason)),
             Err(error) if *choice == DeviceChoice::Auto => Ok((Self::Cpu, error.to_string())),
             Err(error) => Err(error),
