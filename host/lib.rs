@@ -30,6 +30,7 @@ pub mod device;
 pub mod error;
 pub mod film;
 pub mod kernel_module;
+mod memory;
 mod plural;
 pub mod render;
 pub mod scene;

@@ -3,10 +3,11 @@
 use glam::{UVec2, Vec3};
 use rayon::prelude::*;
 use serde::Serialize;
-use spherule_kernel::{Hit, Ray, Rung, Sphere, Surface};
+use spherule_kernel::{Hit, Pixel, Ray, Rung, Sphere, Surface};
 
 use crate::accuracy::random::Random;
 use crate::error::Result;
+use crate::memory;
 use crate::render::whole_image;
 use crate::scene::Scene;
 use crate::trace::CpuTracer;
@@ -52,6 +53,13 @@ const TILE: u32 = 8;
 /// Ambient rays a hit.
 const AMBIENT: usize = 4;
 
+/// What the rays of a pixel that is hit take, and their answers, before and while they are timed.
+const BYTES_PER_PIXEL: u64 = ((3 + AMBIENT) * size_of::<Ray>()
+    + 2 * size_of::<Hit>()
+    + size_of::<Surface>()
+    + AMBIENT * size_of::<u32>()
+    + size_of::<Pixel>()) as u64;
+
 /// The rays of a scene.
 #[derive(Clone, Debug)]
 pub struct RaySets {
@@ -66,20 +74,32 @@ pub struct RaySets {
 }
 
 impl RaySets {
+    /// Refuses an image whose rays would not fit, if each pixel is hit.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::OutOfMemory`](crate::Error::OutOfMemory).
+    pub fn check_room(width: u32, height: u32) -> Result<()> {
+        let pixels = u64::from(width) * u64::from(height);
+        memory::require(
+            pixels.saturating_mul(BYTES_PER_PIXEL),
+            &format!("making the rays of {width} × {height} pixels"),
+        )
+    }
+
     /// Makes them, by what the camera rays hit; `reach` is the length of ambient rays in scene units.
     ///
     /// # Errors
     ///
-    /// As [`whole_image`].
+    /// As [`Self::check_room`] and [`whole_image`].
     pub fn of(scene: &Scene, tracer: &CpuTracer, reach: f32) -> Result<Self> {
         let launch = whole_image(scene)?;
         let size = launch.image_size;
-        let primary: Vec<Ray> = (0..size.x * size.y)
+        Self::check_room(size.x, size.y)?;
+        let primary: Vec<Ray> = (0..size.y)
             .into_par_iter()
-            .map(|index| {
-                let pixel = UVec2::new(index % size.x, index / size.x);
-                launch.camera.pixel_ray(pixel, size)
-            })
+            .flat_map_iter(|y| (0..size.x).map(move |x| UVec2::new(x, y)))
+            .map(|pixel| launch.camera.pixel_ray(pixel, size))
             .collect();
         let mut hits = Vec::new();
         tracer.nearest(Rung::Robust, &primary, &mut hits);
@@ -152,7 +172,8 @@ fn squares(size: UVec2) -> impl Iterator<Item = usize> {
     rows.flat_map(move |y| {
         (0..size.x).step_by(TILE as usize).flat_map(move |x| {
             (y..(y + TILE).min(size.y)).flat_map(move |row| {
-                (x..(x + TILE).min(size.x)).map(move |column| (row * size.x + column) as usize)
+                (x..(x + TILE).min(size.x))
+                    .map(move |column| row as usize * size.x as usize + column as usize)
             })
         })
     })

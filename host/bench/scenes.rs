@@ -1,11 +1,18 @@
 //! The worlds that are timed: each made from a fixed seed, so that anybody times the same.
 
+use std::path::{Path, PathBuf};
+
 use glam::Vec3;
+use spherule_kernel::tree::Node;
 use spherule_kernel::{Material, Sphere};
 
 use crate::accuracy::random::Random;
-use crate::error::{Result, SceneError};
+use crate::error::{Result, SceneError, nearest};
+use crate::memory;
 use crate::scene::{Scene, View, World, toml_file};
+
+/// What a sphere takes while the tree over it is built, by the largest resident set of `bench --scene R10M`.
+const BYTES_PER_SPHERE: u64 = 300;
 
 /// A world that is timed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -75,7 +82,9 @@ impl BenchScene {
                 (number, 1)
             };
             let count = number.parse::<u32>().ok()?.checked_mul(unit)?;
-            (count > 0).then_some(Self::Uniform(count))
+            (1..=Node::MAX_SPHERES)
+                .contains(&count)
+                .then_some(Self::Uniform(count))
         })
     }
 
@@ -88,12 +97,33 @@ impl BenchScene {
         }
     }
 
+    /// Refuses more spheres than would fit with their tree.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::OutOfMemory`](crate::Error::OutOfMemory).
+    pub fn check_room(self) -> Result<()> {
+        match self {
+            Self::Uniform(count) => memory::require(
+                u64::from(count) * BYTES_PER_SPHERE,
+                &format!("making {count} spheres and their tree"),
+            ),
+            Self::S2
+            | Self::S46
+            | Self::S500
+            | Self::Lattice
+            | Self::LatticeRotated
+            | Self::Clustered => Ok(()),
+        }
+    }
+
     /// Makes the scene for an image of this size.
     ///
     /// # Errors
     ///
-    /// None but for mistakes of spherule's own: the scene files that it carries are sound.
+    /// As [`Self::check_room`].
     pub fn make(self, width: u32, height: u32) -> Result<Scene> {
+        self.check_room()?;
         let mut scene = match self {
             Self::S2 => Scene {
                 view: Some(View {
@@ -130,36 +160,89 @@ impl BenchScene {
     }
 }
 
-/// The scene that was named: one of [`BenchScene::ALL`], or a file.
+/// What a name stands for: one of [`BenchScene::ALL`], another number of spheres, or a file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Source {
+    /// A world that is made.
+    Made(BenchScene),
+    /// A file that is read.
+    File(PathBuf),
+}
+
+impl Source {
+    /// What `name` stands for. A file is looked for, and not read yet.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Scene`](crate::Error::Scene) for a name of neither.
+    pub fn named(name: &str) -> Result<Self> {
+        if let Some(scene) = BenchScene::named(name) {
+            return Ok(Self::Made(scene));
+        }
+        let path = Path::new(name);
+        if path.exists() && !path.is_dir() {
+            return Ok(Self::File(path.into()));
+        }
+        let names = BenchScene::ALL.map(BenchScene::name);
+        let is_count =
+            name.starts_with(['R', 'r']) && name[1..].starts_with(|c: char| c.is_ascii_digit());
+        let (message, likely) = if is_count {
+            let most = Node::MAX_SPHERES;
+            (
+                format!("`{name}` names no number of spheres from 1 to {most}"),
+                None,
+            )
+        } else if path.is_dir() {
+            (format!("`{name}` is a folder"), None)
+        } else if path.extension().is_some() {
+            (format!("there is no file `{name}`"), None)
+        } else {
+            let likely = nearest(name, names.iter().map(String::as_str));
+            (format!("there is no bench scene `{name}`"), likely)
+        };
+        let likely = likely.map_or_else(String::new, |name| format!("did you mean {name}? Or "));
+        Err(SceneError::without_place(
+            "",
+            message,
+            format!(
+                "{likely}give one of {}, R and another number of spheres such as R300k, or a scene file (.toml, .pdb, .ent \
+                 or .xyz)",
+                names.join(", ")
+            ),
+        )
+        .into())
+    }
+
+    /// The scene for an image of this size, and how far away something must be to be no ambient occluder.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Scene`](crate::Error::Scene) for a file that is wrong, and as [`BenchScene::make`].
+    pub fn load(&self, width: u32, height: u32) -> Result<(Scene, f32)> {
+        let path = match self {
+            Self::Made(scene) => return Ok((scene.make(width, height)?, scene.reach())),
+            Self::File(path) => path,
+        };
+        let mut scene = Scene::load(path)?;
+        (scene.width, scene.height) = (width, height);
+        let (mut low, mut high) = (Vec3::splat(f32::MAX), Vec3::splat(f32::MIN));
+        for sphere in &scene.world.spheres {
+            low = low.min(sphere.center());
+            high = high.max(sphere.center());
+        }
+        // As much of it as of the cubes.
+        let reach = 0.15 * (high - low).max_element().max(f32::MIN_POSITIVE);
+        Ok((scene, reach))
+    }
+}
+
+/// The scene that was [named](Source::named).
 ///
 /// # Errors
 ///
-/// [`Error::Scene`](crate::Error::Scene) for a file that is wrong, and for a name of neither.
+/// As [`Source::named`] and [`Source::load`].
 pub fn load(name: &str, width: u32, height: u32) -> Result<(Scene, f32)> {
-    if let Some(scene) = BenchScene::named(name) {
-        return Ok((scene.make(width, height)?, scene.reach()));
-    }
-    if !name.contains('.') {
-        let names = BenchScene::ALL.map(BenchScene::name).join(", ");
-        return Err(SceneError::without_place(
-            name,
-            "is no bench scene",
-            format!(
-                "give one of {names}, R and another number of spheres such as R300k, or a scene file (.toml, .pdb, .ent or .xyz)"
-            ),
-        )
-        .into());
-    }
-    let mut scene = Scene::load(name)?;
-    (scene.width, scene.height) = (width, height);
-    let (mut low, mut high) = (Vec3::splat(f32::MAX), Vec3::splat(f32::MIN));
-    for sphere in &scene.world.spheres {
-        low = low.min(sphere.center());
-        high = high.max(sphere.center());
-    }
-    // As much of it as of the cubes.
-    let reach = 0.15 * (high - low).max_element().max(f32::MIN_POSITIVE);
-    Ok((scene, reach))
+    Source::named(name)?.load(width, height)
 }
 
 impl View {
@@ -238,4 +321,33 @@ fn clustered() -> Vec<Sphere> {
         Sphere::new(random.vec3(-side, side), radius)
     }));
     spheres
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_scenes_files_or_refused_with_the_nearest() {
+        let made = |name| Source::named(name).expect(name);
+        assert_eq!(made("r1m"), Source::Made(BenchScene::Uniform(1_000_000)));
+        assert_eq!(made("R300k"), Source::Made(BenchScene::Uniform(300_000)));
+        let file = "scenes/c60.xyz";
+        assert_eq!(made(file), Source::File(file.into()));
+        for (wrong, help) in [
+            ("L1M-rotatd", "did you mean L1M-rotated?"),
+            ("S5000", "did you mean S500?"),
+            ("nope.toml", "scene file"),
+            ("", "give one of S2"),
+            ("scenes", "scene file"),
+            ("R0", "R300k"),
+            ("R-1", "R300k"),
+            // More than a tree can name, and than 32 bits hold.
+            ("R2000M", "R300k"),
+            ("R5000M", "R300k"),
+        ] {
+            let error = Source::named(wrong).expect_err(wrong);
+            assert!(error.is_input() && error.help().contains(help), "{error:?}");
+        }
+    }
 }

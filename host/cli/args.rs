@@ -9,6 +9,7 @@ use spherule_kernel::{Effects, Rung, Shading};
 use crate::accuracy::choose::DEFAULT_TOLERANCE;
 use crate::accuracy::families::Family;
 use crate::device::DeviceChoice;
+use crate::error::nearest;
 use crate::film::file::Format;
 use crate::render::paths::EffectChoice;
 use crate::scene::limits::{MAX_BOUNCES, MAX_IMAGE_SIDE, MAX_SAMPLES};
@@ -40,6 +41,7 @@ pub(super) enum Command {
 }
 
 #[derive(Debug, Args)]
+#[command(allow_negative_numbers = true)]
 #[command(
     after_help = "Exit codes: 0 done, 1 the render or the check failed, 2 the input is wrong.\n\
     SPHERULE_LOG=debug logs what happens; RAYON_NUM_THREADS=N limits the CPU's threads."
@@ -130,6 +132,7 @@ pub(super) struct CheckArguments {
 }
 
 #[derive(Debug, Args)]
+#[command(allow_negative_numbers = true)]
 pub(super) struct AccuracyArguments {
     /// What to measure: auto (a real GPU, else the CPU), gpu, cpu, or a part of an adapter's name
     #[arg(long, value_name = "auto|gpu|cpu|NAME", default_value = "auto")]
@@ -152,8 +155,8 @@ pub(super) struct AccuracyArguments {
     #[arg(long, value_name = "WIDTHxHEIGHT")]
     pub(super) size: Option<Size>,
 
-    /// With --samples: measure a smaller image where the scene's would take longer than about this many seconds
-    #[arg(long, value_name = "SECONDS", value_parser = positive, default_value = "60", conflicts_with = "size", requires = "samples")]
+    /// With --samples: take no longer than about this many seconds, by a smaller image and fewer samples
+    #[arg(long, value_name = "SECONDS", value_parser = positive, default_value = "60", conflicts_with_all = ["size", "scene"], requires = "samples")]
     pub(super) time_limit: f64,
 
     /// Write a report to look at: one HTML page with its plots in it
@@ -166,6 +169,7 @@ pub(super) struct AccuracyArguments {
 }
 
 #[derive(Debug, Args)]
+#[command(allow_negative_numbers = true)]
 pub(super) struct ExplainArguments {
     /// The scene (.toml) or molecule (.pdb, .ent, .xyz)
     pub(super) input: PathBuf,
@@ -186,7 +190,7 @@ pub(super) struct ExplainArguments {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_SAMPLES)))]
     pub(super) samples: Option<u32>,
 
-    /// Measure a smaller image where the scene's would take longer than about this many seconds
+    /// Take no longer than about this many seconds, by a smaller image, fewer samples and fewer runs
     #[arg(long, value_name = "SECONDS", value_parser = positive, default_value = "20", conflicts_with_all = ["size", "no_costs"])]
     pub(super) time_limit: f64,
 
@@ -200,6 +204,7 @@ pub(super) struct ExplainArguments {
 }
 
 #[derive(Debug, Args)]
+#[command(allow_negative_numbers = true)]
 #[command(
     after_help = "Scenes: S2, S46, S500, R10k, R100k, R1M, R10M, L1M, L1M-rotated and X1M; docs/performance.md says what they are.\n\
     R10M takes about 3 GB of memory."
@@ -312,7 +317,8 @@ fn subject(text: &str) -> Result<Subject, String> {
         None => {
             let names: Vec<&str> = Family::ALL.iter().map(|family| family.name()).collect();
             Err(format!(
-                "give one of {}, or a scene file (.toml, .pdb, .ent or .xyz)",
+                "there is no family `{text}`{} Give one of {}, or a scene file (.toml, .pdb, .ent or .xyz)",
+                did_you_mean(text, &names),
                 names.join(", ")
             ))
         }
@@ -372,6 +378,12 @@ impl Precision {
     }
 }
 
+/// The end of "there is no …", where one of the names is like it.
+fn did_you_mean(text: &str, names: &[&str]) -> String {
+    nearest(text, names.iter().copied())
+        .map_or_else(|| ".".into(), |name| format!("; did you mean `{name}`?"))
+}
+
 fn effects(text: &str) -> Result<EffectChoice, String> {
     match text {
         "auto" => return Ok(EffectChoice::Auto),
@@ -388,8 +400,9 @@ fn effects(text: &str) -> Result<EffectChoice, String> {
             Some((effect, _)) => set = set.and(*effect),
             None => {
                 let known: Vec<&str> = Effects::NAMED.iter().map(|(_, name)| *name).collect();
+                let likely = did_you_mean(name.trim(), &known);
                 return Err(format!(
-                    "there is no effect `{}`: give auto, all, none, or some of {}, separated by commas",
+                    "there is no effect `{}`{likely} Give auto, all, none, or some of {}, separated by commas",
                     name.trim(),
                     known.join(", ")
                 ));
@@ -403,14 +416,14 @@ fn positive(text: &str) -> Result<f64, String> {
     text.parse()
         .ok()
         .filter(|number: &f64| *number > 0.0 && *number <= 1e9)
-        .ok_or_else(|| "give a number above zero".into())
+        .ok_or_else(|| "give a number above zero and up to 1e9".into())
 }
 
 fn tolerance(text: &str) -> Result<f64, String> {
     text.parse()
         .ok()
-        .filter(|pixels: &f64| *pixels > 0.0 && pixels.is_finite())
-        .ok_or_else(|| "give a number of pixels above zero, for example 0.1".into())
+        .filter(|pixels: &f64| *pixels > 0.0 && *pixels <= 1e9)
+        .ok_or_else(|| "give a number of pixels above zero and up to 1e9, for example 0.1".into())
 }
 
 /// An image's size, written `1280x720`.

@@ -10,7 +10,7 @@ use crate::bench::export::export;
 use crate::bench::limit::Limit;
 use crate::bench::measure::{Measured, Plan, Speed, measure};
 use crate::bench::rays::RaySets;
-use crate::bench::scenes::{self, BenchScene};
+use crate::bench::scenes::{BenchScene, Source};
 use crate::bench::verify::{Verified, verify};
 use crate::device::Device;
 use crate::error::{Error, Result};
@@ -35,9 +35,27 @@ pub(super) fn run(arguments: &BenchArguments) -> Result<ExitCode> {
         acceleration: arguments.acceleration.into(),
         rounds: arguments.rounds as usize,
     };
+    let names = if arguments.scene.is_empty() {
+        let all = BenchScene::ALL.map(BenchScene::name);
+        // Its making alone takes longer than all of the others.
+        all.into_iter().filter(|name| name != "R10M").collect()
+    } else {
+        arguments.scene.clone()
+    };
+    // Every name is looked at, and what it needs, before anything is measured.
+    let sources = names
+        .iter()
+        .map(|name| Ok((name.as_str(), Source::named(name)?)))
+        .collect::<Result<Vec<_>>>()?;
+    RaySets::check_room(size.width, size.height)?;
+    for (_, source) in &sources {
+        if let Source::Made(scene) = source {
+            scene.check_room()?;
+        }
+    }
     if let Some(folder) = &arguments.export {
-        for name in &arguments.scene {
-            let (scene, reach) = scenes::load(name, size.width, size.height)?;
+        for (name, source) in &sources {
+            let (scene, reach) = source.load(size.width, size.height)?;
             let tracer = CpuTracer::new(&scene.world.spheres, plan.acceleration);
             let sets = RaySets::of(&scene, &tracer, reach)?;
             export(folder, name, &scene, &sets, &tracer, plan.rung)?;
@@ -48,15 +66,8 @@ pub(super) fn run(arguments: &BenchArguments) -> Result<ExitCode> {
 
     let (device, why) = Device::open(&arguments.device)?;
     note(&format!("{} ({why})", device.name()));
-    let names = if arguments.scene.is_empty() {
-        let all = BenchScene::ALL.map(BenchScene::name);
-        // Its making alone takes longer than all of the others.
-        all.into_iter().filter(|name| name != "R10M").collect()
-    } else {
-        arguments.scene.clone()
-    };
     if arguments.verify {
-        return compare(arguments, &device, &names);
+        return compare(arguments, &device, &sources);
     }
     // Numbers that a program reads stand alone.
     let to_stdout = arguments.json.as_deref() == Some("-".as_ref());
@@ -72,8 +83,8 @@ pub(super) fn run(arguments: &BenchArguments) -> Result<ExitCode> {
     }
     show(&head(size.width, size.height, plan, limit.is_some()))?;
     let mut all = Vec::new();
-    for name in &names {
-        let (scene, reach) = scenes::load(name, size.width, size.height)?;
+    for (name, source) in &sources {
+        let (scene, reach) = source.load(size.width, size.height)?;
         let measured = measure(&device, name, &scene, reach, plan, limit.as_ref())?;
         show(&row(&measured))?;
         all.push(measured);
@@ -99,15 +110,19 @@ pub(super) fn run(arguments: &BenchArguments) -> Result<ExitCode> {
 }
 
 /// The tree's answers against those of testing every sphere.
-fn compare(arguments: &BenchArguments, device: &Device, names: &[String]) -> Result<ExitCode> {
+fn compare(
+    arguments: &BenchArguments,
+    device: &Device,
+    sources: &[(&str, Source)],
+) -> Result<ExitCode> {
     let size = arguments.size;
     let mut all = Verified::default();
     print(&format!(
         "{:<12} {:<12} {:>10} {:>10} {:>10}\n",
         "scene", "precision", "rays", "differing", "ties"
     ))?;
-    for name in names {
-        let (scene, reach) = scenes::load(name, size.width, size.height)?;
+    for (name, source) in sources {
+        let (scene, reach) = source.load(size.width, size.height)?;
         let tracer = CpuTracer::new(&scene.world.spheres, Acceleration::Auto);
         let sets = RaySets::of(&scene, &tracer, reach)?;
         for rung in Rung::ALL {
@@ -147,10 +162,11 @@ fn compare(arguments: &BenchArguments, device: &Device, names: &[String]) -> Res
 
 fn head(width: u32, height: u32, plan: Plan, has_limit: bool) -> String {
     format!(
-        "{width} x {height}, precision {}, medians of {} rounds; Mrays/s of each kind, half of the range in per cent{}\n\
+        "{width} x {height}, precision {}, medians of {} {}; Mrays/s of each kind, half of the range in per cent{}\n\
          {:<12} {:>9} {:>5}  {:>20} {:>20} {:>20} {:>20}  {:>10} {:>6}\n",
         plan.rung.name(),
         plan.rounds,
+        if plan.rounds == 1 { "round" } else { "rounds" },
         if has_limit {
             ", share of the limit"
         } else {
