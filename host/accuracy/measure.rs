@@ -30,10 +30,10 @@ pub struct Measured {
     /// The largest |Δ| / (a r²) at which a line was put on the wrong side of the silhouette.
     pub margin: f64,
     /// The largest error of t, in units in the last place, over the rays that hit and were said
-    /// to, where |c| ≥ 2⁻²⁰ |o|².
-    pub max_ulp: u32,
+    /// to, where |c| ≥ 2⁻²⁰ |o|²; `None` if there is no such ray.
+    pub max_ulp: Option<u32>,
     /// The same over all rays that hit and were said to.
-    pub max_ulp_anywhere: u32,
+    pub max_ulp_anywhere: Option<u32>,
     /// Hits whose t is off by more than four units in the last place.
     pub over_4_ulp: usize,
     /// The largest angle between the normal at the reported hit and the true one, in degrees.
@@ -184,18 +184,20 @@ pub fn judge(samples: &[(Ray, Sphere)], answers: &[f32]) -> Measured {
 
 impl Measured {
     /// The error, in units in the last place, that this share of the hits does not exceed; above 1
-    /// rounded up to the end of a bucket of the histogram.
+    /// rounded up to the end of a bucket of the histogram, or to the largest error. `None` without hits.
     #[must_use]
-    pub fn ulp_at(&self, share: f64) -> u64 {
+    pub fn ulp_at(&self, share: f64) -> Option<u32> {
+        let largest = self.max_ulp_anywhere?;
         let total: usize = self.histogram.iter().sum();
         let mut seen = 0;
         for (bucket, count) in self.histogram.iter().enumerate() {
             seen += count;
             if seen as f64 >= share * total as f64 {
-                return (1_u64 << bucket) - 1;
+                let end = (1_u64 << bucket) - 1;
+                return Some(u32::try_from(end).map_or(largest, |end| end.min(largest)));
             }
         }
-        u64::from(u32::MAX)
+        Some(largest)
     }
 
     fn none() -> Self {
@@ -205,8 +207,8 @@ impl Measured {
             false_hits: 0,
             false_misses: 0,
             margin: 0.0,
-            max_ulp: 0,
-            max_ulp_anywhere: 0,
+            max_ulp: None,
+            max_ulp_anywhere: None,
             over_4_ulp: 0,
             normal_degrees: 0.0,
             histogram: vec![0; 34],
@@ -242,10 +244,10 @@ impl Measured {
             .max(normal_error(ray, sphere, found, truth).to_degrees());
         self.histogram[(u32::BITS - off.leading_zeros()) as usize] += 1;
         if has_digits_of_c(ray, sphere) {
-            self.max_ulp = self.max_ulp.max(off);
+            self.max_ulp = self.max_ulp.max(Some(off));
         }
-        if off > self.max_ulp_anywhere || self.worst.is_none() {
-            self.max_ulp_anywhere = self.max_ulp_anywhere.max(off);
+        if Some(off) > self.max_ulp_anywhere {
+            self.max_ulp_anywhere = Some(off);
             self.worst = Some(Worst {
                 ray: [ray.origin, ray.direction]
                     .map(|v| v.to_array().map(f32::to_bits))
@@ -265,7 +267,7 @@ impl Measured {
     }
 
     fn merge(self, other: Self) -> Self {
-        let worst = if other.max_ulp_anywhere > self.max_ulp_anywhere || self.worst.is_none() {
+        let worst = if other.max_ulp_anywhere > self.max_ulp_anywhere {
             other.worst
         } else {
             self.worst
@@ -359,15 +361,21 @@ mod tests {
             (clean.false_hits, clean.false_misses, clean.hits),
             (0, 0, 2000)
         );
-        assert!(clean.max_ulp <= 1 && clean.ulp_at(1.0) <= 1);
+        assert!(clean.max_ulp <= Some(1) && clean.ulp_at(1.0) <= Some(1));
 
         let off: Vec<f32> = right
             .iter()
             .map(|t| t.next_up().next_up().next_up())
             .collect();
-        assert!(judged(&off).max_ulp >= 2);
+        assert!(judged(&off).max_ulp >= Some(2));
         let missed: Vec<f32> = right.iter().map(|_| Hit::NONE_T).collect();
-        assert_eq!(judged(&missed).false_misses, 2000);
+        let none = judged(&missed);
+        assert_eq!(none.false_misses, 2000);
+        // Without a hit there is no error, which is not the same as an error of zero.
+        assert_eq!(
+            (none.max_ulp, none.max_ulp_anywhere, none.ulp_at(0.5)),
+            (None, None, None)
+        );
 
         let outside: Vec<(Ray, Sphere)> = Family::Generic
             .sample(4, 2000)
@@ -378,6 +386,20 @@ mod tests {
             judge(&outside, &vec![1.0; outside.len()]).false_hits,
             outside.len()
         );
+    }
+
+    /// The histogram's buckets are wide, and no share of the hits is off by more than all of them.
+    #[test]
+    fn a_percentile_is_at_most_the_largest_error() {
+        for family in Family::ALL {
+            let samples = family.sample(8, 2000);
+            for rung in Rung::ALL {
+                let answers = intersect_all(&Device::Cpu, rung, &samples).expect("the CPU");
+                let judged = judge(&samples, &answers);
+                assert_eq!(judged.ulp_at(1.0), judged.max_ulp_anywhere);
+                assert!(judged.ulp_at(0.9999) <= judged.max_ulp_anywhere);
+            }
+        }
     }
 
     /// A sign of q swapped: the other root, and the judge sees it.
@@ -396,7 +418,7 @@ mod tests {
                 }
             })
             .collect();
-        assert!(judge(&samples, &swapped).max_ulp > 1000);
+        assert!(judge(&samples, &swapped).max_ulp > Some(1000));
     }
 
     /// The low part of o deleted: on the ground, where O − C is inexact, the digits are gone.
@@ -414,6 +436,6 @@ mod tests {
             })
             .collect();
         let answers = intersect_all(&Device::Cpu, Rung::Compensated, &rounded).expect("the CPU");
-        assert!(judge(&samples, &answers).max_ulp > 1000);
+        assert!(judge(&samples, &answers).max_ulp > Some(1000));
     }
 }

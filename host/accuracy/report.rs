@@ -7,6 +7,7 @@ use super::frames::Frame;
 use super::measure::Measured;
 use super::price::Price;
 use super::samples::Step;
+use super::ulp;
 
 /// What the page says of one rung on one family.
 #[derive(Clone, Copy, Debug)]
@@ -154,7 +155,7 @@ fn scatter(rungs: &[Row<'_>]) -> String {
                 time: row.price.nanoseconds,
                 fastest: row.price.fastest,
                 slowest: row.price.slowest,
-                height: height(f64::from(row.measured.max_ulp_anywhere)),
+                height: height(f64::from(row.measured.max_ulp_anywhere.unwrap_or(0))),
             }
         })
         .collect();
@@ -475,7 +476,7 @@ fn worst_inputs(rungs: &[Row<'_>]) -> String {
             html,
             "<tr><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td><code>{}</code></td><td><code>{}</code></td><td><code>{}</code></td></tr>",
             escape(row.rung),
-            row.measured.max_ulp_anywhere,
+            ulp::shown(row.measured.max_ulp_anywhere),
             parameter(worst.found),
             parameter(worst.truth),
             bits(&worst.ray[..3]),

@@ -24,3 +24,24 @@ pub fn distance(a: f32, b: f32) -> u32 {
     // At most 2³² − 2 apart.
     position(a).abs_diff(position(b)) as u32
 }
+
+/// Two floats so far apart have no digit in common: one is four times the other, or more.
+const NO_DIGIT: u32 = 1 << 24;
+
+/// A [`distance`] in words, which has no meaning as a number where no digit is right; a dash where there is none.
+///
+/// ```
+/// use spherule::accuracy::ulp::{distance, shown};
+///
+/// assert_eq!(shown(Some(3)), "3");
+/// assert_eq!(shown(Some(distance(0.0, 19.6))), "no digit");
+/// assert_eq!(shown(None), "–");
+/// ```
+#[must_use]
+pub fn shown(distance: Option<u32>) -> String {
+    match distance {
+        None => "–".into(),
+        Some(distance) if distance > NO_DIGIT => "no digit".into(),
+        Some(distance) => distance.to_string(),
+    }
+}

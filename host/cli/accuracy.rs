@@ -16,7 +16,7 @@ use crate::accuracy::frames::{self, Frame};
 use crate::accuracy::measure::{Escalation, Measured, intersect_all, judge, self_hits};
 use crate::accuracy::price::{self, Price};
 use crate::accuracy::samples::{self, Step};
-use crate::accuracy::{report, scene_rays};
+use crate::accuracy::{report, scene_rays, ulp};
 use crate::device::Device;
 use crate::error::{Error, Result, SceneError};
 use crate::plural::count_of;
@@ -290,8 +290,8 @@ fn table(report: &Report) -> String {
                 digits(price.nanoseconds),
                 digits(0.5 * (price.slowest - price.fastest)),
                 price.nanoseconds / robust,
-                measured.max_ulp_anywhere,
-                measured.ulp_at(0.9999),
+                ulp::shown(measured.max_ulp_anywhere),
+                ulp::shown(measured.ulp_at(0.9999)),
                 measured.false_hits,
                 measured.false_misses,
                 if measured.margin > 0.0 {
@@ -312,9 +312,10 @@ fn table(report: &Report) -> String {
         text.push_str(&frames_table(frames));
     }
     text.push_str(
-        "ulp: error of t in units in the last place, over the hits. false, missed: hits reported that are none, hits\n\
-         not found. margin: the largest |Δ| / (a r²) on the wrong side of a silhouette. self: rays that leave a hit\n\
-         outwards and hit its sphere again. normal°: the largest error of the normal.\n",
+        "ulp: error of t in units in the last place, over the hits, or \"no digit\" where none of its digits is right.\n\
+         false, missed: hits reported that are none, hits not found. margin: the largest |Δ| / (a r²) on the wrong side\n\
+         of a silhouette. self: rays that leave a hit outwards and hit its sphere again. normal°: the largest error of\n\
+         the normal.\n",
     );
     text
 }

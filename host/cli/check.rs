@@ -11,6 +11,7 @@ use super::print;
 use crate::accuracy::canary::{Canary, Share};
 use crate::accuracy::cases::{Verdict, catalogue};
 use crate::accuracy::scene_cases::SCENE_CASES;
+use crate::accuracy::ulp;
 use crate::device::Device;
 use crate::error::Result;
 
@@ -103,14 +104,14 @@ fn table(report: &Report) -> String {
         (
             "quotients rounded correctly",
             format!(
-                "{}, worst {} ulp",
+                "{}, worst {}",
                 share(canary.quotients),
-                canary.quotient_ulps
+                ulps(canary.quotient_ulps)
             ),
         ),
         (
             "square roots rounded correctly",
-            format!("{}, worst {} ulp", share(canary.roots), canary.root_ulps),
+            format!("{}, worst {}", share(canary.roots), ulps(canary.root_ulps)),
         ),
         (
             "64-bit results right",
@@ -165,6 +166,16 @@ fn table(report: &Report) -> String {
         let _ = writeln!(text, "Broken promises:\n  {}", broken.join("\n  "));
     }
     text
+}
+
+/// An error in units in the last place, or in words where it is no number of them.
+fn ulps(distance: u32) -> String {
+    let shown = ulp::shown(Some(distance));
+    if shown == distance.to_string() {
+        shown + " ulp"
+    } else {
+        shown + " right"
+    }
 }
 
 fn yes_no(yes: bool) -> &'static str {
