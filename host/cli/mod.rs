@@ -8,12 +8,16 @@ mod bench;
 mod check;
 mod devices;
 mod explain;
+mod precision;
 mod progress;
 mod render;
 mod report;
 
+use std::ffi::OsString;
 use std::io::Write;
+use std::path::Path;
 use std::process::ExitCode;
+use std::time::Instant;
 
 use clap::Parser;
 use tracing_subscriber::filter::{LevelFilter, Targets};
@@ -22,14 +26,37 @@ use tracing_subscriber::prelude::*;
 use args::{Arguments, Command};
 
 use crate::error::{Error, Result};
+use crate::plural::count_of;
+use crate::scene::Scene;
 
-/// Runs the command line of this process.
+/// Runs the command line of this process; its exit code is for `main` to return.
+///
+/// Where a panic would be reported, and where log records go if they go nowhere yet, is set for the
+/// whole process. Nothing else of it is changed, so that other threads may go on meanwhile.
 #[must_use]
 pub fn main() -> ExitCode {
+    run(std::env::args_os())
+}
+
+/// As [`main`], with other arguments; the first is the program's name.
+///
+/// ```
+/// let code = spherule::cli::run(["spherule", "devices", "--json"]);
+/// assert_eq!(code, std::process::ExitCode::SUCCESS);
+/// ```
+#[must_use]
+pub fn run(arguments: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> ExitCode {
     set_panic_hook();
-    quiet_mesa();
     start_log();
-    let done = match Arguments::parse().command {
+    let arguments = match Arguments::try_parse_from(arguments) {
+        Ok(arguments) => arguments,
+        Err(error) => {
+            // A help that was asked for is no error and goes to stdout.
+            let _ = error.print();
+            return u8::try_from(error.exit_code()).map_or(ExitCode::FAILURE, ExitCode::from);
+        }
+    };
+    let done = match arguments.command {
         Command::Render(arguments) => render::run(&arguments),
         Command::Devices(arguments) => devices::run(&arguments),
         Command::Check(arguments) => check::run(&arguments),
@@ -68,8 +95,32 @@ fn note(text: &str) {
     let _ = writeln!(std::io::stderr(), "{text}");
 }
 
-/// What the library and wgpu log goes to stderr; `SPHERULE_LOG` sets how much, for example
-/// `debug` or `spherule=debug,wgpu_hal=info`.
+/// Reads a scene for a command.
+fn load(path: &Path) -> Result<Scene> {
+    let started = Instant::now();
+    let scene = Scene::load(path)?;
+    let effects: Vec<&str> = scene
+        .called_effects()
+        .iter()
+        .map(|called| called.name)
+        .collect();
+    tracing::debug!(
+        "read {}: {}, {}, {}, {} × {} pixels, {}, effects: [{}]: {:.1?}",
+        path.display(),
+        count_of(scene.world.spheres.len(), "sphere"),
+        count_of(scene.world.materials.len(), "material"),
+        count_of(scene.lights.len(), "light"),
+        scene.width,
+        scene.height,
+        count_of(scene.samples() as usize, "sample"),
+        effects.join(" "),
+        started.elapsed()
+    );
+    Ok(scene)
+}
+
+/// What the library and wgpu log goes to stderr; `SPHERULE_LOG` sets how much. What it says and is not understood is
+/// ignored, with a word.
 fn start_log() {
     let quiet = Targets::new()
         .with_default(LevelFilter::ERROR)
@@ -77,10 +128,14 @@ fn start_log() {
         // wgpu's errors reach the user as errors of the call that caused them.
         .with_target("wgpu_core", LevelFilter::OFF)
         .with_target("wgpu_hal", LevelFilter::OFF);
-    let filter = std::env::var("SPHERULE_LOG")
-        .ok()
-        .and_then(|text| text.parse::<Targets>().ok())
-        .unwrap_or(quiet);
+    let wish = std::env::var_os("SPHERULE_LOG").unwrap_or_default();
+    let filter = log_filter(&wish.to_string_lossy(), &quiet).unwrap_or_else(|wrong| {
+        note(&format!(
+            "warning: SPHERULE_LOG is ignored: {wrong}. Give off, error, warn, info, debug or trace, or targets with levels \
+             such as spherule=debug,wgpu_hal=info"
+        ));
+        quiet
+    });
     let stderr = tracing_subscriber::fmt::layer()
         .with_writer(std::io::stderr)
         .without_time()
@@ -88,16 +143,23 @@ fn start_log() {
         .compact();
     tracing_subscriber::registry()
         .with(stderr.with_filter(filter))
-        .init();
+        // A program that calls `main` may have a log of its own.
+        .try_init()
+        .ok();
 }
 
-/// On a machine without a desktop session, Mesa's device-select layer complains on stderr that
-/// it finds no Wayland socket. The layer only reorders adapters, which spherule does itself.
-fn quiet_mesa() {
-    if std::env::var_os("XDG_RUNTIME_DIR").is_none() {
-        // SAFETY: the process has no other thread yet.
-        unsafe { std::env::set_var("NODEVICE_SELECT", "1") };
+/// `quiet`, and what `wish` adds to it: a level is of spherule's own records, `target=level` of others'.
+fn log_filter(wish: &str, quiet: &Targets) -> Result<Targets, String> {
+    let mut filter = quiet.clone();
+    for part in wish.split(',').map(str::trim).filter(|p| !p.is_empty()) {
+        let (target, level) = part.split_once('=').unwrap_or(("spherule", part));
+        let level: LevelFilter = level
+            .trim()
+            .parse()
+            .map_err(|_| format!("`{}` is no level", level.trim().escape_default()))?;
+        filter = filter.with_target(target.trim(), level);
     }
+    Ok(filter)
 }
 
 /// A panic is a mistake of ours; say so. One that the library catches is reported as an error
@@ -111,4 +173,33 @@ fn set_panic_hook() {
             );
         }
     }));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use tracing::Level;
+
+    #[test]
+    fn wishes_for_the_log_are_understood_or_refused() {
+        let quiet = Targets::new().with_target("spherule", LevelFilter::WARN);
+        let logs = |wish: &str, target: &str, level: Level| {
+            let filter = log_filter(wish, &quiet).expect(wish);
+            filter.would_enable(target, &level)
+        };
+        assert!(logs("", "spherule::cli", Level::WARN));
+        assert!(!logs("", "spherule::cli", Level::INFO));
+        assert!(logs("debug", "spherule::device", Level::DEBUG));
+        assert!(!logs("debug", "wgpu_core", Level::ERROR));
+        assert!(logs(
+            "wgpu_hal = INFO, debug",
+            "wgpu_hal::vulkan",
+            Level::INFO
+        ));
+        assert!(logs("wgpu_hal=info,debug", "spherule", Level::DEBUG));
+        assert!(!logs("off", "spherule", Level::ERROR));
+        for wrong in ["debgu", "spherule=loud", "a=b=c", "=", "spherule"] {
+            assert!(log_filter(wrong, &quiet).is_err(), "{wrong}");
+        }
+    }
 }

@@ -11,14 +11,17 @@ const PATIENCE: Duration = Duration::from_millis(500);
 const STEPS: u64 = 1000;
 
 pub(super) struct Bar {
+    /// What is being done.
+    what: &'static str,
     started: Instant,
     enabled: bool,
     bar: OnceLock<ProgressBar>,
 }
 
 impl Bar {
-    pub(super) fn new(quiet: bool) -> Self {
+    pub(super) fn new(what: &'static str, quiet: bool) -> Self {
         Self {
+            what,
             started: Instant::now(),
             enabled: !quiet && std::io::stderr().is_terminal(),
             bar: OnceLock::new(),
@@ -31,10 +34,10 @@ impl Bar {
             return;
         }
         let bar = self.bar.get_or_init(|| {
-            let style =
-                ProgressStyle::with_template("rendering {bar:32} {percent:>3} %  {eta} left");
+            let style = ProgressStyle::with_template("{msg} {bar:32} {percent:>3} %  {eta} left");
             ProgressBar::new(STEPS)
                 .with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+                .with_message(self.what)
         });
         // Bands finish in any order; the bar never runs backwards.
         let position = (done * STEPS as f64) as u64;

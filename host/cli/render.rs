@@ -5,12 +5,11 @@ use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
 use serde::Serialize;
-use spherule_kernel::Rung;
 
 use super::args::RenderArguments;
+use super::precision::choose_rung;
 use super::progress::Bar;
 use super::{note, print};
-use crate::accuracy::choose::choose;
 use crate::device::{Device, DeviceChoice};
 use crate::error::{Error, Result, SceneError};
 use crate::film::Image;
@@ -83,7 +82,7 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<ExitCode> {
     let (scene, early, load) = std::thread::scope(|scope| {
         let opener =
             opens_early(arguments).then(|| scope.spawn(|| Device::open(&arguments.device)));
-        let scene = Scene::load(&arguments.input);
+        let scene = super::load(&arguments.input);
         let load = started.elapsed();
         let early = opener.map(|opener| {
             opener
@@ -118,9 +117,17 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<ExitCode> {
         (Device::Cpu, true) => Some(Device::open(&DeviceChoice::Gpu)?.0),
         (Device::Gpu(_), true) => Some(Device::Cpu),
     };
-    say(&format!("rendering on {} ({why})", device.name()));
-    let (rung, why) = choose_rung(arguments, &scene, &device);
-    say(&format!("precision {} ({why})", rung.name()));
+    let chosen = choose_rung(arguments.precision, &scene, arguments.tolerance, &device);
+    let rung = chosen.rung;
+    say(&format!(
+        "rendering on {} ({why}), precision {} ({})",
+        device.name(),
+        rung.name(),
+        chosen.why
+    ));
+    if let Some(warning) = &chosen.warning {
+        say(warning);
+    }
     let settings = Settings {
         shading: arguments.shade.into(),
         rung,
@@ -140,10 +147,19 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<ExitCode> {
         }
         done => done?,
     };
+    let timings = &rendered.timings;
+    tracing::debug!(
+        "set up (tree, tables, upload; compiling {:.1?} of it): {:.1?}; traced: {:.1?}; read back: {:.1?}",
+        timings.compile,
+        timings.setup,
+        timings.trace,
+        timings.readback
+    );
     let image = &rendered.image;
     let encoding = Instant::now();
     image.save(&output)?;
     let encode = encoding.elapsed();
+    tracing::debug!("encoded and wrote {}: {encode:.1?}", output.display());
     let total = started.elapsed();
 
     if let Some((near, far)) = image.depth_range() {
@@ -243,29 +259,13 @@ fn opens_early(arguments: &RenderArguments) -> bool {
     is_gpu && arguments.input.is_file()
 }
 
-/// The rung that was asked for, or else the one that the scene calls for; and why.
-fn choose_rung(arguments: &RenderArguments, scene: &Scene, device: &Device) -> (Rung, String) {
-    if let Some(rung) = arguments.precision.rung() {
-        return (rung, "asked for".into());
-    }
-    let choice = choose(scene, arguments.tolerance, device.has_f64());
-    let mut why = format!(
-        "within {:.1e} pixels, {} are allowed",
-        choice.bound, arguments.tolerance
-    );
-    if let Some((rung, bound)) = choice.cheaper {
-        why += &format!("; {} might be off by {bound:.1e}", rung.name());
-    }
-    (choice.rung, why)
-}
-
 fn with_bar(
     arguments: &RenderArguments,
     scene: &Scene,
     settings: Settings,
     device: &Device,
 ) -> Result<Rendered> {
-    let bar = Bar::new(arguments.quiet);
+    let bar = Bar::new("rendering", arguments.quiet);
     render(scene, settings, device, &|done| bar.set(done))
 }
 
