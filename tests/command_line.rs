@@ -3,6 +3,7 @@
 mod common;
 
 use std::path::Path;
+use std::time::{Duration, Instant};
 
 use assert_cmd::Command;
 use common::skips;
@@ -282,22 +283,130 @@ fn wrong_arguments_are_refused() {
     }
 }
 
-/// A machine that cannot: exit code 1.
+/// No argument makes a command panic or hang, whatever its number or its name.
+#[test]
+fn odd_arguments_are_refused_in_every_command() {
+    let numbers = [
+        "-1",
+        "-0.5",
+        "nan",
+        "-nan",
+        "inf",
+        "-inf",
+        "1e308",
+        "1e400",
+        "",
+        " ",
+        "0x10",
+        "1,5",
+        "one",
+        "99999999999999999999",
+    ];
+    let sizes = [
+        "0x0",
+        "0x1",
+        "65537x1",
+        "1x65537",
+        "-1x-1",
+        "4294967297x1",
+        "x",
+        "1x",
+        "",
+        "1x1x1",
+    ];
+    let names = ["", "nope", "auto,cpu", "\u{1b}[31m"];
+    for (arguments, odd) in [
+        (
+            &["render", "scenes/box.toml", "--tolerance"][..],
+            &numbers[..],
+        ),
+        (&["render", "scenes/box.toml", "--samples"], &numbers),
+        (&["render", "scenes/box.toml", "--samples"], &["0", "65537"]),
+        (&["render", "scenes/box.toml", "--max-bounces"], &numbers),
+        (&["render", "scenes/box.toml", "--seed"], &numbers),
+        (&["render", "scenes/box.toml", "--time-limit"], &numbers),
+        (&["render", "scenes/box.toml", "--noise"], &numbers),
+        (&["render", "scenes/box.toml", "--noise"], &["0"]),
+        (&["render", "scenes/box.toml", "--size"], &sizes),
+        (&["render", "scenes/box.toml", "--effects"], &names),
+        (&["render", "scenes/box.toml", "--precision"], &names),
+        (&["render", "scenes/box.toml", "--shade"], &names),
+        (&["accuracy", "--rays"], &numbers),
+        (&["accuracy", "--rays"], &["0", "999", "100000001"]),
+        (&["accuracy", "--scene"], &names),
+        (
+            &["accuracy", "--samples", "scenes/box.toml", "--time-limit"],
+            &numbers,
+        ),
+        (
+            &["accuracy", "--samples", "scenes/box.toml", "--size"],
+            &sizes,
+        ),
+        (&["accuracy", "--samples"], &names),
+        (&["explain", "scenes/box.toml", "--time-limit"], &numbers),
+        (&["explain", "scenes/box.toml", "--time-limit"], &["0"]),
+        (&["explain", "scenes/box.toml", "--samples"], &numbers),
+        (&["explain", "scenes/box.toml", "--size"], &sizes),
+        (&["explain", "scenes/box.toml", "--precision"], &names),
+        (&["explain"], &names),
+        (&["bench", "--size"], &sizes),
+        (&["bench", "--rounds"], &numbers),
+        (&["bench", "--rounds"], &["0", "1001"]),
+        (&["bench", "--scene"], &names),
+        (&["bench", "--precision"], &names),
+        (&["bench", "--acceleration"], &names),
+        (&["check", "--device"], &["", " "]),
+        (&["devices"], &names),
+    ] {
+        for odd in odd {
+            spherule()
+                .args(arguments)
+                .arg(odd)
+                .timeout(Duration::from_secs(60))
+                .assert()
+                .code(2)
+                .stderr(
+                    contains("internal error")
+                        .not()
+                        .and(contains("\u{1b}[31m").not()),
+                );
+        }
+    }
+}
+
+/// A machine that cannot: exit code 1. A name that no device has: the input is wrong, unless there is none at all.
 #[test]
 fn what_the_machine_cannot_do_is_exit_code_one() {
     let dir = temporary();
-    spherule()
-        .args([
-            "render",
-            "scenes/two-spheres.toml",
-            "--device",
-            "no such adapter",
-            "-o",
-        ])
-        .arg(dir.path().join("out.png"))
-        .assert()
-        .code(1)
-        .stderr(contains("no such adapter").and(contains("spherule devices")));
+    let unknown = if common::all_adapters().is_empty() {
+        1
+    } else {
+        2
+    };
+    for command in [
+        &["render", "scenes/two-spheres.toml"][..],
+        &["explain", "scenes/two-spheres.toml"],
+        &["check"],
+        &["accuracy"],
+        &["bench"],
+    ] {
+        spherule()
+            .args(command)
+            .args(["--device", "no such adapter"])
+            .assert()
+            .code(unknown)
+            .stderr(contains("no such adapter").and(contains("spherule devices")));
+    }
+    // With no driver at all there is nothing that any name could mean.
+    for device in ["gpu", "llvmpipe"] {
+        spherule()
+            .env("VK_DRIVER_FILES", "/nonexistent")
+            .env("VK_ICD_FILENAMES", "/nonexistent")
+            .args(["check", "--device", device])
+            .assert()
+            .code(1)
+            .stderr(contains("no graphics driver"));
+    }
     spherule()
         .args([
             "render",
@@ -330,7 +439,7 @@ fn an_old_image_survives_a_failed_render() {
         ])
         .arg(&out)
         .assert()
-        .code(1);
+        .failure();
     assert_eq!(std::fs::read(&out).expect("the old file"), b"old");
     spherule()
         .args([
@@ -467,7 +576,7 @@ fn accuracy_writes_a_table_a_page_and_numbers() {
 fn auto_precision_says_what_it_took_and_why() {
     let dir = temporary();
     for (scene, size, rung) in [
-        ("scenes/1crn.pdb", "32x18", "textbook"),
+        ("scenes/1crn.pdb", "32x18", "robust"),
         // A pixel of a small image forgives more.
         ("scenes/marble-on-earth.toml", "32x18", "double"),
         ("scenes/marble-on-earth.toml", "960x540", "certified"),
@@ -481,6 +590,112 @@ fn auto_precision_says_what_it_took_and_why() {
                 contains(format!("precision {rung} (within ")).and(contains("0.1 are allowed")),
             );
     }
+}
+
+/// Where no rung is within the tolerance, the image is made all the same, and a warning says so.
+#[test]
+fn a_tolerance_that_no_precision_meets_is_said() {
+    let dir = temporary();
+    let render = |tolerance: &str, more: &[&str]| {
+        let mut command = spherule();
+        command
+            .args([
+                "render",
+                "scenes/c60.xyz",
+                "--device",
+                "cpu",
+                "--size",
+                "16x9",
+            ])
+            .args(["--tolerance", tolerance, "-o"])
+            .arg(dir.path().join("out.png"))
+            .args(more);
+        command.assert().success()
+    };
+    render("1e-9", &[]).stderr(
+        contains("precision certified (within ")
+            .and(contains("warning: no precision keeps this image within"))
+            .and(contains("a larger --tolerance")),
+    );
+    render("1e-9", &["--precision", "robust"]).stderr(contains("warning").not());
+    render("0.1", &[]).stderr(contains("warning").not());
+    render("1e-9", &["-q"]).stderr("");
+}
+
+/// One line before the work, one after it.
+#[test]
+fn render_says_what_renders_and_what_was_written() {
+    let dir = temporary();
+    let output = spherule()
+        .args([
+            "render",
+            "scenes/c60.xyz",
+            "--device",
+            "cpu",
+            "--size",
+            "16x9",
+            "-o",
+        ])
+        .arg(dir.path().join("out.png"))
+        .assert()
+        .success();
+    let stderr = String::from_utf8_lossy(&output.get_output().stderr).into_owned();
+    let lines: Vec<&str> = stderr.lines().collect();
+    assert_eq!(lines.len(), 2, "{stderr}");
+    let before =
+        contains("rendering on CPU, ").and(contains("(asked for), precision robust (within "));
+    assert!(before.eval(lines[0]), "{stderr}");
+    assert!(lines[1].starts_with("wrote "), "{stderr}");
+}
+
+/// What happens, step by step; and a wish that is not understood is not kept silent about.
+#[test]
+fn the_log_says_what_happens() {
+    let dir = temporary();
+    let render = |log: &str| {
+        let mut command = spherule();
+        command
+            .env("SPHERULE_LOG", log)
+            .args([
+                "render",
+                "scenes/c60.xyz",
+                "--device",
+                "cpu",
+                "--size",
+                "16x9",
+                "-o",
+            ])
+            .arg(dir.path().join("out.png"));
+        command.assert().success()
+    };
+    render("debug").stderr(
+        contains("read scenes/c60.xyz: 60 spheres, 1 material, 0 lights")
+            .and(contains("the device is the CPU"))
+            .and(contains("traced: "))
+            .and(contains("encoded and wrote ")),
+    );
+    render("warn").stderr(contains("DEBUG").not());
+    for wrong in ["debgu", "spherule=loud"] {
+        render(wrong).stderr(contains("SPHERULE_LOG is ignored").and(contains("debug")));
+    }
+    if skips("the_log_says_what_happens on a GPU") {
+        return;
+    }
+    spherule()
+        .env("SPHERULE_LOG", "debug")
+        .args([
+            "render",
+            "scenes/c60.xyz",
+            "--device",
+            "gpu",
+            "--size",
+            "16x9",
+            "-o",
+        ])
+        .arg(dir.path().join("out.png"))
+        .assert()
+        .success()
+        .stderr(contains("opened ").and(contains("compiled ")));
 }
 
 #[test]
@@ -523,11 +738,14 @@ fn explain_says_what_calls_for_each_effect_and_what_it_costs() {
 #[test]
 fn measuring_keeps_to_its_time() {
     let scene = "scenes/glass-marble.toml";
+    // The limit is the whole command's. Much more than it would be forgotten samples, rounds or rows.
+    let started = Instant::now();
     let output = spherule()
-        .args(["explain", scene, "--device", "cpu", "--samples", "2"])
+        .args(["explain", scene, "--device", "cpu"])
         .args(["--time-limit", "1", "--json"])
         .assert()
         .success();
+    assert!(started.elapsed() < Duration::from_secs(10), "{started:?}");
     let report: serde_json::Value =
         serde_json::from_slice(&output.get_output().stdout).expect("JSON");
     let size = |key: &str| report[key].as_u64().expect("a size");
@@ -537,22 +755,77 @@ fn measuring_keeps_to_its_time() {
         (16..540).contains(&height) && width * 540 < (height + 1) * 960,
         "{width} × {height}"
     );
+    assert_eq!(report["whole_samples"], 512);
+    assert!(report["frame"]["own"]["milliseconds"].as_f64() > Some(0.0));
+    // With no time at all one frame is measured, and the others are said to be missing.
+    spherule()
+        .args(["explain", scene, "--device", "cpu", "--time-limit", "1e-9"])
+        .assert()
+        .success()
+        .stdout(
+            contains("28 × 16 pixels and 2 samples").and(contains("no time left to measure it")),
+        );
     spherule()
         .args(["explain", scene, "--time-limit", "1", "--size", "16x9"])
         .assert()
         .code(2)
         .stderr(contains("--time-limit").and(contains("--size")));
+    let started = Instant::now();
     spherule()
         .args(["accuracy", "--device", "cpu", "--time-limit", "1"])
         .args(["--samples", "scenes/box.toml"])
         .assert()
         .success()
         .stderr(contains("to be done in time").and(contains("--size")));
+    assert!(started.elapsed() < Duration::from_secs(10), "{started:?}");
+    spherule()
+        .args(["accuracy", "--device", "cpu", "--time-limit", "1e-9"])
+        .args(["--samples", "scenes/box.toml"])
+        .assert()
+        .success()
+        .stderr(contains("the time was up before all samples were measured"));
     spherule()
         .args(["accuracy", "--time-limit", "1"])
         .assert()
         .code(2)
         .stderr(contains("--samples"));
+    spherule()
+        .args(["accuracy", "--time-limit", "1", "--scene", "far"])
+        .assert()
+        .code(2)
+        .stderr(contains("--scene"));
+}
+
+/// A name that is wrong, or more than the machine has room for, is known before anything is measured.
+#[test]
+fn bench_looks_at_everything_before_it_measures() {
+    let bench = |arguments: &[&str]| {
+        let mut command = spherule();
+        command
+            .args(["bench", "--device", "cpu", "--no-limit", "--scene", "S2"])
+            .args(arguments);
+        command.assert().stdout("")
+    };
+    for (wrong, words) in [
+        ("nope", "there is no bench scene `nope`"),
+        ("L1M-rotatd", "did you mean L1M-rotated?"),
+        ("gone.toml", "there is no file `gone.toml`"),
+        ("scenes", "`scenes` is a folder"),
+        ("R2000M", "from 1 to 1073741824"),
+        ("", "there is no bench scene ``"),
+    ] {
+        bench(&["--scene", wrong])
+            .code(2)
+            .stderr(contains(words).and(contains("give one of S2, S46")));
+    }
+    // Where the system says how much memory it has.
+    if cfg!(target_os = "linux") {
+        for too_much in [&["--size", "65536x65536"][..], &["--scene", "R1000M"]] {
+            bench(too_much)
+                .code(1)
+                .stderr(contains("out of memory").and(contains("GiB")));
+        }
+    }
 }
 
 /// A share of the limit for each kind of rays, unless it is not asked for.

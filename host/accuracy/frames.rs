@@ -1,14 +1,15 @@
 //! What each rung costs and gets right in a whole frame of a scene.
 
 use serde::Serialize;
-use spherule_kernel::{Effects, Rung, Shading};
+use spherule_kernel::{Effects, Pixel, Rung, Shading};
 
 use crate::device::Device;
 use crate::error::Result;
 use crate::film::compare::{Comparison, Tolerance};
 use crate::film::flip::mean_flip;
+use crate::memory;
 use crate::render::paths::EffectChoice;
-use crate::render::{QUIET, Settings, render};
+use crate::render::{Progress, QUIET, Settings, render};
 use crate::scene::Scene;
 
 /// How often each rung renders the frame; the rungs take turns.
@@ -39,7 +40,12 @@ pub struct Frame {
 /// # Errors
 ///
 /// As [`render`].
-pub fn measure(device: &Device, rungs: &[Rung], scene: &Scene) -> Result<Vec<Frame>> {
+pub fn measure(
+    device: &Device,
+    rungs: &[Rung],
+    scene: &Scene,
+    progress: Progress<'_>,
+) -> Result<Vec<Frame>> {
     let settings = |rung| Settings {
         shading: Shading::Lit,
         rung,
@@ -47,6 +53,11 @@ pub fn measure(device: &Device, rungs: &[Rung], scene: &Scene) -> Result<Vec<Fra
         effects: EffectChoice::Only(Effects::NONE),
         ..Settings::default()
     };
+    let pixels = u64::from(scene.width) * u64::from(scene.height);
+    memory::require(
+        pixels * (1 + rungs.len() as u64) * size_of::<Pixel>() as u64,
+        &format!("keeping an image of each precision of {pixels} pixels"),
+    )?;
     let reference = render(scene, settings(Rung::Certified), &Device::Cpu, QUIET)?.image;
     let mut times = vec![Vec::new(); rungs.len()];
     let mut images = Vec::new();
@@ -59,6 +70,8 @@ pub fn measure(device: &Device, rungs: &[Rung], scene: &Scene) -> Result<Vec<Fra
             } else {
                 times[index].push(rendered.timings.trace.as_secs_f64() * 1e3);
             }
+            let done = round * rungs.len() + index + 1;
+            progress(done as f64 / ((1 + ROUNDS) * rungs.len()) as f64);
         }
     }
     Ok(rungs

@@ -1,5 +1,7 @@
 //! What accuracy costs in time, for sampling: the error of an image as its samples grow.
 
+use std::time::Instant;
+
 use serde::Serialize;
 use spherule_kernel::Rung;
 use spherule_kernel::integrate::luminance;
@@ -8,12 +10,17 @@ use crate::device::Device;
 use crate::error::Result;
 use crate::film::Image;
 use crate::film::flip::mean_flip;
-use crate::render::{QUIET, Settings, render};
+use crate::render::{Progress, Settings, render};
 use crate::scene::Scene;
 use crate::scene::limits::MAX_SAMPLES;
 
 /// How many more samples the reference has than the last step.
 const REFERENCE: u32 = 16;
+/// How many more it has at least, where the time was up before it had all.
+const LEAST_REFERENCE: u32 = 8;
+/// The part of the time there is that the reference may take. Where it has all of its samples the steps of three rungs take
+/// a quarter of the whole.
+const SHARE: f64 = 0.7;
 
 /// An image of some samples, against one of many.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -43,29 +50,79 @@ fn of_reference(most: u32) -> u32 {
     most.saturating_mul(REFERENCE).min(MAX_SAMPLES)
 }
 
+/// The steps, and the image that they are measured against.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Measured {
+    /// Rung by rung, the fewest samples first.
+    pub steps: Vec<Step>,
+    /// How many samples the reference has.
+    pub reference: u32,
+    /// Whether the time was up before every step was measured.
+    pub is_cut: bool,
+}
+
 /// Renders `scene` on `device` on each of `rungs` with 1, 2, 4, … up to `most` samples. The reference
-/// is of another seed, on the highest of the rungs, with sixteen times as many.
+/// is of another seed, on the highest of the rungs, with sixteen times as many. All have fewer where they would not be done
+/// at `until`.
 ///
 /// # Errors
 ///
 /// As [`render`].
-pub fn measure(device: &Device, rungs: &[Rung], scene: &Scene, most: u32) -> Result<Vec<Step>> {
-    let settings = |rung| Settings {
-        rung,
+pub fn measure(
+    device: &Device,
+    rungs: &[Rung],
+    scene: &Scene,
+    most: u32,
+    until: Option<Instant>,
+    progress: Progress<'_>,
+) -> Result<Measured> {
+    let left = || until.map(|until| until.saturating_duration_since(Instant::now()));
+    let all = in_all(rungs.len(), most) as f64;
+    let mut done = 0.0;
+    let mut scene = scene.clone();
+    let wanted = of_reference(most);
+    scene.sampling.samples = Some(wanted);
+    scene.sampling.seed = scene.sampling.seed.wrapping_add(0x5eed);
+    let settings = Settings {
+        rung: rungs.last().copied().unwrap_or_default(),
+        time_limit: left().map(|left| left.mul_f64(SHARE)),
         ..Settings::default()
     };
-    let mut scene = scene.clone();
-    scene.sampling.samples = Some(of_reference(most));
-    scene.sampling.seed = scene.sampling.seed.wrapping_add(0x5eed);
-    let highest = rungs.last().copied().unwrap_or_default();
-    let reference = render(&scene, settings(highest), device, QUIET)?.image;
+    let started = Instant::now();
+    let rendered = render(&scene, settings, device, &|part| {
+        progress(part * f64::from(wanted) / all);
+    })?;
+    let (reference, took) = (rendered.image, started.elapsed());
+    let reached = rendered.reached.map_or(1, |reached| reached.samples).max(1);
+    done += f64::from(wanted);
     scene.sampling.seed = scene.sampling.seed.wrapping_sub(0x5eed);
+
     let mut steps = Vec::new();
+    let mut is_cut = false;
     for rung in rungs {
+        let settings = Settings {
+            rung: *rung,
+            ..Settings::default()
+        };
         let mut samples = 1;
+        // By the reference, and from then on by the step before.
+        let mut expected = took / reached;
         while samples <= most {
+            let is_late = left().is_some_and(|left| left < expected);
+            let is_near = reached < wanted && reached / samples < LEAST_REFERENCE;
+            if (is_late || is_near) && samples > 1 {
+                is_cut = true;
+                break;
+            }
             scene.sampling.samples = Some(samples);
-            let rendered = render(&scene, settings(*rung), device, QUIET)?;
+            let started = Instant::now();
+            let before = done;
+            let rendered = render(&scene, settings, device, &|part| {
+                progress((before + part * f64::from(samples)) / all);
+            })?;
+            let compile = rendered.timings.compile;
+            expected = 2 * started.elapsed().saturating_sub(compile);
+            done += f64::from(samples);
             steps.push(Step {
                 rung: rung.name(),
                 samples,
@@ -77,7 +134,11 @@ pub fn measure(device: &Device, rungs: &[Rung], scene: &Scene, most: u32) -> Res
             samples *= 2;
         }
     }
-    Ok(steps)
+    Ok(Measured {
+        steps,
+        reference: reached,
+        is_cut,
+    })
 }
 
 /// See [`Step::error`].

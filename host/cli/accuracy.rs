@@ -3,13 +3,14 @@
 use std::fmt::Write;
 use std::path::Path;
 use std::process::ExitCode;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use serde::Serialize;
 use spherule_kernel::{Ray, Rung, Sphere};
 
 use super::args::{AccuracyArguments, Subject};
-use super::{note, print};
+use super::progress::Bar;
+use super::{load, note, print};
 use crate::accuracy::canary::Canary;
 use crate::accuracy::families::Family;
 use crate::accuracy::frames::{self, Frame};
@@ -19,9 +20,10 @@ use crate::accuracy::samples::{self, Step};
 use crate::accuracy::{report, scene_rays, ulp};
 use crate::device::Device;
 use crate::error::{Error, Result, SceneError};
+use crate::memory;
 use crate::plural::count_of;
 use crate::render::fit::fit;
-use crate::render::{QUIET, Settings, render};
+use crate::render::{Progress, QUIET, Settings, render};
 use crate::scene::Scene;
 use crate::shown::shown_path;
 
@@ -39,6 +41,9 @@ pub(super) struct Report {
     /// Width and height of the image that `samples` are of.
     #[serde(skip_serializing_if = "Option::is_none")]
     samples_image: Option<[u32; 2]>,
+    /// Samples a pixel of the image that they are compared with.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    reference_samples: Option<u32>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     samples: Vec<Step>,
 }
@@ -73,8 +78,36 @@ struct RungReport {
 const SEED: u64 = 2026;
 /// The most samples of `--samples`; the reference has more.
 const MOST_SAMPLES: u32 = 256;
+/// What a ray of a family takes, its sphere, its answer, and the ray that leaves it again with them.
+const BYTES_PER_RAY: u64 = 3 * size_of::<(Ray, Sphere)>() as u64;
+/// The part of the time there is that `--samples` is planned to take. The rest is for finding out how large the image
+/// may be, and for what drifts.
+const SHARE: f64 = 0.8;
 
 pub(super) fn run(arguments: &AccuracyArguments) -> Result<ExitCode> {
+    let started = Instant::now();
+    // What is wrong with the input is said before any device is opened.
+    let mut scene = match (&arguments.samples, &arguments.scene) {
+        (Some(path), _) | (None, Some(Subject::Scene(path))) => Some(load(path)?),
+        (None, Some(Subject::Family(_)) | None) => None,
+    };
+    if let (Some(scene), Some(size)) = (&mut scene, arguments.size) {
+        (scene.width, scene.height) = (size.width, size.height);
+    }
+    if let (Some(scene), Some(path)) = (&scene, &arguments.samples)
+        && scene.effects().is_empty()
+    {
+        return Err(SceneError::without_place(
+            path,
+            "the scene calls for no effect, so that one ray a pixel shows all of it",
+            "give a scene with light or samples, for example scenes/soft-light.toml, or ask for its frames by --scene",
+        )
+        .into());
+    }
+    memory::require(
+        u64::from(arguments.rays) * BYTES_PER_RAY,
+        &format!("judging {} rays", arguments.rays),
+    )?;
     let (device, why) = Device::open(&arguments.device)?;
     note(&format!("measuring {} ({why})", device.name()));
     let canary = Canary::on(&device)?;
@@ -90,27 +123,21 @@ pub(super) fn run(arguments: &AccuracyArguments) -> Result<ExitCode> {
     let mut frames = None;
     let mut steps = Vec::new();
     let mut image = None;
-    match &arguments.scene {
-        _ if arguments.samples.is_some() => {
-            let path = arguments.samples.as_deref().unwrap_or(Path::new(""));
-            let mut scene = Scene::load(path)?;
-            if let Some(size) = arguments.size {
-                (scene.width, scene.height) = (size.width, size.height);
-            }
-            if scene.effects().is_empty() {
-                return Err(SceneError::without_place(
-                    path,
-                    "the scene calls for no effect, so that one ray a pixel shows all of it",
-                    "give a scene with light or samples, for example scenes/soft-light.toml, or ask for its frames by --scene",
-                )
-                .into());
-            }
+    let mut reference_samples = None;
+    let bar = Bar::new("measuring", false);
+    let progress = |done| bar.set(done);
+    let mut is_cut = false;
+    match (scene, &arguments.scene) {
+        (Some(mut scene), _) if arguments.samples.is_some() => {
             // The others are between these two in time and in error.
             let ends = [Rung::Robust, Rung::Double, Rung::Certified];
             let rungs: Vec<Rung> = ends.into_iter().filter(|r| rungs.contains(r)).collect();
             let whole = [scene.width, scene.height];
+            // The limit is for all of the command. A size that was asked for is measured whole.
+            let mut until = None;
             if arguments.size.is_none() {
-                fit_samples(&mut scene, &device, &rungs, arguments.time_limit)?;
+                let until = *until.insert(started + Duration::from_secs_f64(arguments.time_limit));
+                fit_samples(&mut scene, &device, &rungs, until)?;
             }
             if whole != [scene.width, scene.height] {
                 note(&format!(
@@ -119,31 +146,44 @@ pub(super) fn run(arguments: &AccuracyArguments) -> Result<ExitCode> {
                 ));
             }
             image = Some([scene.width, scene.height]);
-            steps = samples::measure(&device, &rungs, &scene, MOST_SAMPLES)?;
+            let measured =
+                samples::measure(&device, &rungs, &scene, MOST_SAMPLES, until, &progress)?;
+            is_cut = measured.is_cut;
+            reference_samples = Some(measured.reference);
+            steps = measured.steps;
         }
-        Some(Subject::Scene(path)) => {
-            let mut scene = Scene::load(path)?;
-            if let Some(size) = arguments.size {
-                (scene.width, scene.height) = (size.width, size.height);
-            }
+        (Some(scene), Some(Subject::Scene(path))) => {
             let samples = scene_rays::sample(&scene, SEED, arguments.rays as usize)?;
-            families.push(measure(&device, &rungs, "scene", &samples)?);
+            families.push(measure(&device, &rungs, "scene", &samples, &|_| {})?);
             frames = Some(FramesReport {
                 scene: shown_path(path),
                 spheres: scene.world.spheres.len(),
                 width: scene.width,
                 height: scene.height,
-                rungs: frames::measure(&device, &rungs, &scene)?,
+                rungs: frames::measure(&device, &rungs, &scene, &progress)?,
             });
         }
-        only => {
-            for family in Family::ALL {
-                if !matches!(only, Some(Subject::Family(only)) if *only != family) {
-                    let samples = family.sample(SEED, arguments.rays as usize);
-                    families.push(measure(&device, &rungs, family.name(), &samples)?);
-                }
+        (_, only) => {
+            let wanted: Vec<Family> = match only {
+                Some(Subject::Family(only)) => vec![*only],
+                _ => Family::ALL.to_vec(),
+            };
+            for (index, family) in wanted.iter().enumerate() {
+                let samples = family.sample(SEED, arguments.rays as usize);
+                let progress = |done| progress((index as f64 + done) / wanted.len() as f64);
+                families.push(measure(
+                    &device,
+                    &rungs,
+                    family.name(),
+                    &samples,
+                    &progress,
+                )?);
             }
         }
+    }
+    drop(bar);
+    if is_cut {
+        note("the time was up before all samples were measured: give a longer --time-limit");
     }
     let report = Report {
         device: device.name(),
@@ -153,6 +193,7 @@ pub(super) fn run(arguments: &AccuracyArguments) -> Result<ExitCode> {
         families,
         frames,
         samples_image: image,
+        reference_samples,
         samples: steps,
     };
     if let Some(path) = &arguments.json {
@@ -176,10 +217,12 @@ fn measure(
     rungs: &[Rung],
     family: &'static str,
     samples: &[(Ray, Sphere)],
+    progress: Progress<'_>,
 ) -> Result<FamilyReport> {
     let prices = price::measure(device, rungs, samples)?;
     let mut reports = Vec::new();
     for (rung, price) in rungs.iter().zip(prices) {
+        progress((1 + reports.len()) as f64 / (1 + rungs.len()) as f64);
         let answers = intersect_all(device, *rung, samples)?;
         reports.push(RungReport {
             rung: rung.name(),
@@ -203,8 +246,8 @@ fn write(path: &Path, text: &str) -> Result<()> {
     })
 }
 
-/// Makes the image of `scene` smaller where what `--samples` renders of it would take longer than `seconds`.
-fn fit_samples(scene: &mut Scene, device: &Device, rungs: &[Rung], seconds: f64) -> Result<()> {
+/// Makes the image of `scene` smaller where what `--samples` renders of it would not be done at `until`.
+fn fit_samples(scene: &mut Scene, device: &Device, rungs: &[Rung], until: Instant) -> Result<()> {
     let samples = scene.sampling.samples.replace(1);
     let in_all = samples::in_all(rungs.len(), MOST_SAMPLES);
     // The reference takes most of the time, on the highest of the rungs.
@@ -212,9 +255,11 @@ fn fit_samples(scene: &mut Scene, device: &Device, rungs: &[Rung], seconds: f64)
         rung: rungs.last().copied().unwrap_or_default(),
         ..Settings::default()
     };
-    let sample = Duration::from_secs_f64(seconds / in_all as f64);
-    fit(scene, sample, |scene| {
-        Ok(render(scene, settings, device, QUIET)?.timings.trace)
+    let left = until.saturating_duration_since(Instant::now());
+    fit(scene, left.mul_f64(SHARE / in_all as f64), |scene| {
+        let started = Instant::now();
+        let compile = render(scene, settings, device, QUIET)?.timings.compile;
+        Ok(started.elapsed().saturating_sub(compile))
     })?;
     scene.sampling.samples = samples;
     Ok(())
@@ -223,8 +268,16 @@ fn fit_samples(scene: &mut Scene, device: &Device, rungs: &[Rung], seconds: f64)
 fn steps_table(report: &Report) -> String {
     let [width, height] = report.samples_image.unwrap_or_default();
     let mut text = format!(
-        "{}, {width} × {height} pixels\n\n{:12} {:>8} {:>14} {:>10} {:>10} {:>10} {:>12}\n",
-        report.device, "rung", "samples", "ms", "error", "estimate", "ꟻLIP", "error² × ms",
+        "{}, {width} × {height} pixels, against {} samples of another seed\n\n{:12} {:>8} {:>14} {:>10} {:>10} {:>10} {:>12}\n",
+        report.device,
+        report.reference_samples.unwrap_or_default(),
+        "rung",
+        "samples",
+        "ms",
+        "error",
+        "estimate",
+        "ꟻLIP",
+        "error² × ms",
     );
     for (index, step) in report.samples.iter().enumerate() {
         let is_first = index == 0 || report.samples[index - 1].rung != step.rung;
@@ -246,7 +299,7 @@ fn steps_table(report: &Report) -> String {
         );
     }
     text.push_str(
-        "\nerror: root mean square of the luminance against many more samples of another seed, over the mean.\n\
+        "\nerror: root mean square of the luminance against the image of many samples, over the mean.\n\
          estimate: what the render itself says, taking its stratified samples for independent ones. error² × ms\n\
          stays the same where the error falls as 1/√N, and falls where it does better.\n",
     );

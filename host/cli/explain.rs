@@ -2,14 +2,16 @@
 
 use std::fmt::Write;
 use std::process::ExitCode;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use serde::Serialize;
-use spherule_kernel::{Effects, Rung};
+use spherule_kernel::Effects;
 
 use super::args::ExplainArguments;
-use super::{note, print};
-use crate::accuracy::choose::{DEFAULT_TOLERANCE, choose};
+use super::precision::choose_rung;
+use super::progress::Bar;
+use super::{load, note, print};
+use crate::accuracy::choose::DEFAULT_TOLERANCE;
 use crate::device::Device;
 use crate::error::Result;
 use crate::kernel_module;
@@ -30,7 +32,10 @@ struct Report {
     height: u32,
     /// Width and height of the scene's image.
     whole_image: [u32; 2],
+    /// Samples a pixel of the image that was measured.
     samples: u32,
+    /// Those of the scene's image.
+    whole_samples: u32,
     max_bounces: u32,
     device: String,
     precision: &'static str,
@@ -44,11 +49,11 @@ struct Report {
     effects: Vec<Effect>,
 }
 
-/// The frame by the scene's own pipeline, and by that of all effects.
+/// The frame by the scene's own pipeline, and by that of all effects, if there was time for it.
 #[derive(Debug, Serialize)]
 struct Frame {
     own: Cost,
-    all_effects: Cost,
+    all_effects: Option<Cost>,
 }
 
 #[derive(Debug, Serialize)]
@@ -57,26 +62,28 @@ struct Effect {
     /// What calls for it; absent if nothing does.
     #[serde(skip_serializing_if = "Option::is_none")]
     by: Option<String>,
-    /// The frame without it, by a pipeline that does not hold it.
+    /// The frame without it, by a pipeline that does not hold it; absent if there was no time for it.
     #[serde(skip_serializing_if = "Option::is_none")]
     without: Option<Cost>,
 }
 
+/// The part of the time there is that measuring is planned to take. The rest is for finding out how large the image
+/// may be, and for what drifts.
+const SHARE: f64 = 0.6;
+
 pub(super) fn run(arguments: &ExplainArguments) -> Result<ExitCode> {
-    let mut scene = Scene::load(&arguments.input)?;
+    // The limit is for all of the command. A size that was asked for is measured whole.
+    let until = match arguments.size {
+        None => Some(Instant::now() + Duration::from_secs_f64(arguments.time_limit)),
+        Some(_) => None,
+    };
+    let mut scene = load(&arguments.input)?;
     if let Some(size) = arguments.size {
         (scene.width, scene.height) = (size.width, size.height);
     }
     scene.sampling.samples = arguments.samples.or(scene.sampling.samples);
     let (device, why) = Device::open(&arguments.device)?;
-    let (rung, why_precision) = match arguments.precision.rung() {
-        Some(rung) => (rung, "asked for".to_owned()),
-        None => {
-            let choice = choose(&scene, DEFAULT_TOLERANCE, device.has_f64());
-            (choice.rung, format!("within {:.1e} pixels", choice.bound))
-        }
-    };
-    let report = report(arguments, scene, &device, why, rung, why_precision)?;
+    let report = report(arguments, scene, &device, &why, until)?;
     if arguments.json {
         let text = serde_json::to_string_pretty(&report).unwrap_or_default();
         print(&format!("{text}\n"))?;
@@ -90,10 +97,14 @@ fn report(
     arguments: &ExplainArguments,
     mut scene: Scene,
     device: &Device,
-    why: String,
-    rung: Rung,
-    why_precision: String,
+    why: &str,
+    until: Option<Instant>,
 ) -> Result<Report> {
+    let chosen = choose_rung(arguments.precision, &scene, DEFAULT_TOLERANCE, device);
+    if let Some(warning) = &chosen.warning {
+        note(warning);
+    }
+    let rung = chosen.rung;
     let called = scene.called_effects();
     let own = scene.effects();
     let mut choices = vec![EffectChoice::Auto, EffectChoice::All];
@@ -103,6 +114,7 @@ fn report(
             .map(|one| EffectChoice::Only(own.without(one.effect))),
     );
     let whole_image = [scene.width, scene.height];
+    let whole_samples = scene.samples();
     let mut costs = if arguments.no_costs {
         Vec::new()
     } else {
@@ -111,19 +123,35 @@ fn report(
             rung,
             ..Settings::default()
         };
-        if arguments.size.is_none() {
-            let frames = cost::frames(choices.len()) as f64;
-            let frame = Duration::from_secs_f64(arguments.time_limit / frames);
+        let mut compiling = Duration::ZERO;
+        if let Some(until) = until {
+            let left = until.saturating_duration_since(Instant::now());
+            let frame = left.mul_f64(SHARE / cost::frames(choices.len()) as f64);
             fit(&mut scene, frame, |scene| {
-                Ok(render(scene, settings, device, QUIET)?.timings.trace)
+                let started = Instant::now();
+                let compile = render(scene, settings, device, QUIET)?.timings.compile;
+                compiling = compiling.max(compile);
+                let took = started.elapsed().saturating_sub(compile);
+                tracing::debug!(
+                    "a frame of {} × {} pixels and {} samples: {took:.1?} of {frame:.1?}",
+                    scene.width,
+                    scene.height,
+                    scene.samples()
+                );
+                Ok(took)
             })?;
         }
-        cost::measure(&scene, settings, device, &choices)?
+        let bar = Bar::new("measuring", false);
+        let progress = |done| bar.set(done);
+        cost::measure(
+            &scene, settings, device, &choices, compiling, until, &progress,
+        )?
     };
-    let without: Vec<Cost> = costs.drain(2.min(costs.len())..).collect();
-    let frame = <[Cost; 2]>::try_from(costs)
-        .ok()
-        .map(|[own, all_effects]| Frame { own, all_effects });
+    let without = costs.split_off(2.min(costs.len()));
+    let frame = match costs[..] {
+        [Some(own), all_effects] => Some(Frame { own, all_effects }),
+        _ => None,
+    };
     let effects = Effects::NAMED
         .iter()
         .map(|(effect, name)| {
@@ -131,7 +159,7 @@ fn report(
             Effect {
                 name,
                 by: index.map(|index| called[index].by.clone()),
-                without: index.and_then(|index| without.get(index).copied()),
+                without: index.and_then(|index| without.get(index).copied().flatten()),
             }
         })
         .collect();
@@ -142,10 +170,11 @@ fn report(
         height: scene.height,
         whole_image,
         samples: scene.samples(),
+        whole_samples,
         max_bounces: scene.sampling.max_bounces,
         device: device.name(),
         precision: rung.name(),
-        why_precision,
+        why_precision: chosen.why,
         effect_bits: own.to_bits(),
         module_bytes: kernel_module::for_rung(rung)?.words().len() * 4,
         frame,
@@ -153,13 +182,16 @@ fn report(
     })
 }
 
+/// Said of what was left out.
+const NOT_MEASURED: &str = "no time left to measure it";
+
 fn table(report: &Report) -> String {
     let [width, height] = report.whole_image;
     let mut text = format!(
         "{}: {}, {width} × {height} pixels, {}, at most {}\n{}, precision {} ({})\n",
         report.scene,
         count_of(report.spheres, "sphere"),
-        count_of(report.samples as usize, "sample"),
+        count_of(report.whole_samples as usize, "sample"),
         count_of(report.max_bounces as usize, "bounce"),
         report.device,
         report.precision,
@@ -173,28 +205,37 @@ fn table(report: &Report) -> String {
         )
     };
     // Writing to a String cannot fail.
-    if report.whole_image != [report.width, report.height] {
+    if (report.whole_image, report.whole_samples) != ([report.width, report.height], report.samples)
+    {
         let _ = writeln!(
             text,
-            "measured with {} × {} pixels, to be done in time (--size {width}x{height} measures all)",
-            report.width, report.height,
+            "measured with {} × {} pixels and {}, to be done in time (--size {width}x{height} measures all)",
+            report.width,
+            report.height,
+            count_of(report.samples as usize, "sample"),
         );
     }
     if let Some(frame) = &report.frame {
-        let ratio = frame.all_effects.milliseconds / frame.own.milliseconds;
-        let _ = writeln!(
-            text,
-            "a frame takes {}; by the pipeline of all effects {}, {ratio:.2} times as long",
-            spread(&frame.own),
-            spread(&frame.all_effects),
-        );
+        let _ = write!(text, "a frame takes {}; ", spread(&frame.own));
+        let _ = match &frame.all_effects {
+            Some(all) => writeln!(
+                text,
+                "by the pipeline of all effects {}, {:.2} times as long",
+                spread(all),
+                all.milliseconds / frame.own.milliseconds,
+            ),
+            None => writeln!(text, "by the pipeline of all effects: {NOT_MEASURED}"),
+        };
         if frame.own.compile_milliseconds > 0.0 {
             let _ = writeln!(
                 text,
-                "the pipeline is made of {} KiB of SPIR-V and was compiled in {:.0} ms, that of all effects in {:.0} ms",
+                "the pipeline is made of {} KiB of SPIR-V and was compiled in {:.0} ms{}",
                 report.module_bytes / 1024,
                 frame.own.compile_milliseconds,
-                frame.all_effects.compile_milliseconds,
+                frame.all_effects.map_or_else(String::new, |all| format!(
+                    ", that of all effects in {:.0} ms",
+                    all.compile_milliseconds
+                )),
             );
         }
     }
@@ -202,7 +243,12 @@ fn table(report: &Report) -> String {
     if called.is_empty() {
         text.push_str("\nThe scene calls for no effect: one ray a pixel shows it.\n");
     } else {
-        text.push_str("\nCalled for                frame without it         by\n");
+        let head = if report.frame.is_some() {
+            "frame without it"
+        } else {
+            ""
+        };
+        let _ = writeln!(text, "\n{:24} {head:26} by", "Called for");
     }
     for effect in called {
         let cost = match (&effect.without, &report.frame) {
@@ -211,11 +257,12 @@ fn table(report: &Report) -> String {
                 without.milliseconds,
                 100.0 * (without.milliseconds / frame.own.milliseconds - 1.0),
             ),
-            _ => String::new(),
+            (None, Some(_)) => NOT_MEASURED.into(),
+            (_, None) => String::new(),
         };
         let _ = writeln!(
             text,
-            "  {:22} {cost:24} {}",
+            "  {:22} {cost:26} {}",
             effect.name,
             effect.by.as_deref().unwrap_or_default()
         );
