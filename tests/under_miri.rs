@@ -43,7 +43,11 @@ fn rays(random: &mut Random, count: usize) -> Vec<Ray> {
 #[test]
 fn trees_are_grown_and_walked() {
     let mut random = Random::new(3);
-    let counts = if cfg!(miri) { [0, 1, 7, 40] } else { [0, 1, 40, 900] };
+    let counts = if cfg!(miri) {
+        [0, 1, 7, 40]
+    } else {
+        [0, 1, 40, 900]
+    };
     for count in counts {
         let mut spheres = world(&mut random, count);
         spheres.extend([Sphere::new(Vec3::ONE, 0.5); 12]);

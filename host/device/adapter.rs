@@ -209,7 +209,9 @@ pub(super) fn choose(choice: &DeviceChoice) -> Result<(Option<wgpu::Adapter>, St
                     return Err(Error::NoSuchAdapter { name, found });
                 }
                 // The name may be right, and its driver is missing.
-                DeviceChoice::Named(name) => format!("has a name that contains \"{}\"", shown(name)),
+                DeviceChoice::Named(name) => {
+                    format!("has a name that contains \"{}\"", shown(name))
+                }
                 DeviceChoice::Auto | DeviceChoice::Gpu | DeviceChoice::Cpu => "was found".into(),
             };
             Err(Error::NoAdapter {
