@@ -26,7 +26,7 @@ mod validate;
 pub mod view;
 pub mod world;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use glam::Vec3;
 
@@ -62,6 +62,8 @@ pub struct Scene {
     pub sampling: Sampling,
     /// From light to the colours of an 8-bit image.
     pub develop: Develop,
+    /// The files that the scene was read from: its own, and what that names. No output may replace them.
+    pub sources: Vec<PathBuf>,
 }
 
 impl Scene {
@@ -87,6 +89,7 @@ impl Scene {
             lights: Vec::new(),
             sampling: Sampling::default(),
             develop: Develop::default(),
+            sources: Vec::new(),
         }
     }
 
@@ -97,15 +100,19 @@ impl Scene {
     /// [`Error::Scene`] says which file is wrong, where in it, and how to mend it.
     pub fn load(path: impl AsRef<Path>) -> Result<Self> {
         let path = path.as_ref();
-        match extension(path).as_str() {
-            "toml" => toml_file::load(path),
-            extension if molecule::is_molecule(extension) => Ok(Self::new(molecule::load(path)?)),
-            _ => Err(Error::Scene(SceneError::without_place(
-                path,
-                "not a kind of file that spherule reads",
-                "give a scene (.toml) or a molecule (.pdb, .ent or .xyz)",
-            ))),
-        }
+        let mut scene = match extension(path).as_str() {
+            "toml" => toml_file::load(path)?,
+            extension if molecule::is_molecule(extension) => Self::new(molecule::load(path)?),
+            _ => {
+                return Err(Error::Scene(SceneError::without_place(
+                    path,
+                    "not a kind of file that spherule reads",
+                    "give a scene (.toml) or a molecule (.pdb, .ent or .xyz)",
+                )));
+            }
+        };
+        scene.sources.push(path.into());
+        Ok(scene)
     }
 
     /// The view that is rendered: the one given, or else one that frames the world.

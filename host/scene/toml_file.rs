@@ -5,7 +5,7 @@ mod value;
 
 use std::collections::BTreeMap;
 use std::ops::Range;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use glam::Vec3;
 use rayon::prelude::*;
@@ -292,7 +292,22 @@ impl Reader<'_> {
         if let Some(fog) = &file.fog {
             scene.fog = Some(self.fog(fog.get_ref())?);
         }
+        let particles = file.particles.as_ref().map(|table| &table.file);
+        let sky = file
+            .sky
+            .as_ref()
+            .and_then(|sky| sky.get_ref().image.as_ref());
+        for (key, name) in [("file", particles), ("image", sky)] {
+            if let Some(name) = name {
+                scene.sources.push(self.beside(self.text(key, name)?));
+            }
+        }
         Ok(scene)
+    }
+
+    /// The file that the scene names: its name counts from the scene's directory.
+    fn beside(&self, name: &str) -> PathBuf {
+        self.path.parent().unwrap_or(Path::new("")).join(name)
     }
 
     fn image(&self, table: &ImageTable, scene: &mut Scene) -> Result<()> {
@@ -474,11 +489,7 @@ impl Reader<'_> {
             .image
             .as_ref()
             .map(|file| -> Result<_> {
-                let path = self
-                    .path
-                    .parent()
-                    .unwrap_or(Path::new(""))
-                    .join(self.text("image", file)?);
+                let path = self.beside(self.text("image", file)?);
                 environment::load(&path, strength).map_err(|error| match error {
                     Error::Scene(inner) => self
                         .wrong(file, inner.to_string(), "named here", inner.help)
@@ -906,8 +917,7 @@ impl Reader<'_> {
 
     fn particles(&self, file: &Spanned<Value>) -> Result<World> {
         let name = self.text("file", file)?;
-        let named = Path::new(name);
-        let path = self.path.parent().unwrap_or(Path::new("")).join(named);
+        let path = self.beside(name);
         if !molecule::is_molecule(&super::extension(&path)) {
             return Err(self
                 .wrong(
