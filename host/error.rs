@@ -151,10 +151,32 @@ pub enum Error {
     #[error(transparent)]
     Scene(#[from] Box<SceneError>),
 
-    /// An image cannot be made, read or written.
+    /// An image cannot be made or read.
     #[error("{path}: {reason}", path = shown_path(path))]
     Image {
         /// The image file.
+        path: PathBuf,
+        /// What is wrong.
+        reason: String,
+        /// How to mend it.
+        help: String,
+    },
+
+    /// An output cannot be written.
+    #[error("{path}: {reason}", path = shown_path(path))]
+    Output {
+        /// Its file, as the user calls it.
+        path: PathBuf,
+        /// What is wrong.
+        reason: String,
+        /// How to mend it.
+        help: String,
+    },
+
+    /// An output must not be written where it was asked for: it is an input, another output, or of no known kind.
+    #[error("{path}: {reason}", path = shown_path(path))]
+    OutputRefused {
+        /// Its file, as the user calls it.
         path: PathBuf,
         /// What is wrong.
         reason: String,
@@ -210,14 +232,17 @@ impl Error {
                     .into()
             }
             Self::Scene(error) => error.help.clone(),
-            Self::Image { help, .. } => help.clone(),
+            Self::Image { help, .. } | Self::Output { help, .. } | Self::OutputRefused { help, .. } => help.clone(),
         }
     }
 
     /// Whether the input is to blame (exit code 2) rather than the machine (exit code 1).
     #[must_use]
     pub fn is_input(&self) -> bool {
-        matches!(self, Self::Scene(_) | Self::NoSuchAdapter { .. })
+        matches!(
+            self,
+            Self::Scene(_) | Self::NoSuchAdapter { .. } | Self::OutputRefused { .. }
+        )
     }
 }
 

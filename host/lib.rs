@@ -14,7 +14,8 @@
 //! | [`trace`] | rays by the million, without an image |
 //! | [`accuracy`] | how right the rungs of the ladder are, decided by an exact oracle |
 //! | [`mod@bench`] | how fast rays of every kind are |
-//! | [`film`] | images: encoding, files, comparison |
+//! | [`film`] | images: encoding, comparison |
+//! | [`mod@write`] | outputs: checked before the work, written whole or not at all |
 //! | [`error`] | [`Error`]: what can go wrong, and how to mend it |
 //! | [`kernel_module`] | the kernel's SPIR-V that this build embeds |
 //! | `plural` | counts with their nouns |
@@ -36,6 +37,7 @@ pub mod render;
 pub mod scene;
 mod shown;
 pub mod trace;
+pub mod write;
 
 pub use device::{Device, DeviceChoice, Gpu};
 pub use error::{Error, Result};

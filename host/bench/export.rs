@@ -11,7 +11,7 @@
 
 use std::path::Path;
 
-use bytemuck::Pod;
+use bytemuck::cast_slice;
 use serde_json::json;
 use spherule_kernel::Rung;
 
@@ -20,12 +20,30 @@ use crate::error::{Error, Result};
 use crate::render::whole_image;
 use crate::scene::Scene;
 use crate::trace::CpuTracer;
+use crate::write::Output;
+use crate::write::same::refuse_inputs;
 
-/// Writes the files into `folder`, which is made if need be.
+/// Makes `folder` if need be, and checks that files can be made in it.
 ///
 /// # Errors
 ///
-/// [`Error::Image`] for a file that cannot be written, and as [`whole_image`].
+/// [`Error::Output`] if not.
+pub fn prepare(folder: &Path) -> Result<()> {
+    std::fs::create_dir_all(folder).map_err(|error| Error::Output {
+        path: folder.into(),
+        reason: format!("cannot be made: {error}"),
+        help: "name a folder in a directory that may be written".into(),
+    })?;
+    Output::new(&folder.join("meta.json"))?;
+    Ok(())
+}
+
+/// Writes the files into `folder`, which is there.
+///
+/// # Errors
+///
+/// [`Error::Output`] for a file that cannot be written, [`Error::OutputRefused`] for one that the scene was read
+/// from, and as [`whole_image`].
 pub fn export(
     folder: &Path,
     name: &str,
@@ -34,7 +52,11 @@ pub fn export(
     tracer: &CpuTracer,
     rung: Rung,
 ) -> Result<()> {
-    std::fs::create_dir_all(folder).map_err(|error| failed(folder, &error))?;
+    let put = |file: &str, bytes: &[u8]| {
+        let output = Output::new(&folder.join(file))?;
+        refuse_inputs(&[&output], &scene.sources)?;
+        output.write(bytes)
+    };
     let camera = whole_image(scene)?.camera;
     let half_height = camera.up.length();
     let unit = |v: glam::Vec3| v.normalize_or_zero().to_array();
@@ -56,38 +78,22 @@ pub fn export(
             "half_height": half_height,
         },
     });
-    put(&folder.join("meta.json"), meta.to_string().as_bytes())?;
-    put_all(&folder.join("spheres.f32"), &scene.world.spheres)?;
-    put_all(&folder.join("nodes.u32"), tracer.tree().nodes())?;
-    put_all(&folder.join("order.u32"), tracer.order())?;
+    put("meta.json", meta.to_string().as_bytes())?;
+    put("spheres.f32", cast_slice(&scene.world.spheres))?;
+    put("nodes.u32", cast_slice(tracer.tree().nodes()))?;
+    put("order.u32", cast_slice(tracer.order()))?;
     let (mut hits, mut occluded) = (Vec::new(), Vec::new());
     for kind in Kind::ALL {
         let rays = sets.kind(kind);
-        put_all(&folder.join(format!("{}.f32", kind.name())), rays)?;
-        let path = folder.join(format!("{}.hits", kind.name()));
+        put(&format!("{}.f32", kind.name()), cast_slice(rays))?;
+        let file = format!("{}.hits", kind.name());
         if kind.is_any() {
             tracer.occluded(rung, rays, &mut occluded);
-            put_all(&path, &occluded)?;
+            put(&file, cast_slice(&occluded))?;
         } else {
             tracer.nearest(rung, rays, &mut hits);
-            put_all(&path, &hits)?;
+            put(&file, cast_slice(&hits))?;
         }
     }
     Ok(())
-}
-
-fn put_all<T: Pod>(path: &Path, values: &[T]) -> Result<()> {
-    put(path, bytemuck::cast_slice(values))
-}
-
-fn put(path: &Path, bytes: &[u8]) -> Result<()> {
-    std::fs::write(path, bytes).map_err(|error| failed(path, &error))
-}
-
-fn failed(path: &Path, error: &std::io::Error) -> Error {
-    Error::Image {
-        path: path.into(),
-        reason: format!("cannot be written: {error}"),
-        help: "check that the folder may be written, and that there is room".into(),
-    }
 }

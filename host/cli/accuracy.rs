@@ -1,7 +1,6 @@
 //! `spherule accuracy`: what each rung gets right on each family of rays, and what it costs.
 
 use std::fmt::Write;
-use std::path::Path;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
@@ -10,7 +9,7 @@ use spherule_kernel::{Ray, Rung, Sphere};
 
 use super::args::{AccuracyArguments, Subject};
 use super::progress::Bar;
-use super::{load, note, print};
+use super::{load, note, print, write_json};
 use crate::accuracy::canary::Canary;
 use crate::accuracy::families::Family;
 use crate::accuracy::frames::{self, Frame};
@@ -19,13 +18,15 @@ use crate::accuracy::price::{self, Price};
 use crate::accuracy::samples::{self, Step};
 use crate::accuracy::{report, scene_rays, ulp};
 use crate::device::Device;
-use crate::error::{Error, Result, SceneError};
+use crate::error::{Result, SceneError};
 use crate::memory;
 use crate::plural::count_of;
 use crate::render::fit::fit;
 use crate::render::{Progress, QUIET, Settings, render};
 use crate::scene::Scene;
 use crate::shown::shown_path;
+use crate::write::Output;
+use crate::write::same::{refuse_clashes, refuse_inputs};
 
 /// Everything that was measured; the JSON output is this.
 #[derive(Debug, Serialize)]
@@ -87,10 +88,20 @@ const SHARE: f64 = 0.8;
 pub(super) fn run(arguments: &AccuracyArguments) -> Result<ExitCode> {
     let started = Instant::now();
     // What is wrong with the input is said before any device is opened.
+    let html = arguments.output.as_deref().map(Output::new).transpose()?;
+    let json = arguments.json.as_deref().map(Output::new).transpose()?;
+    let outputs: Vec<&Output> = html.iter().chain(&json).collect();
+    refuse_clashes(&outputs)?;
     let mut scene = match (&arguments.samples, &arguments.scene) {
-        (Some(path), _) | (None, Some(Subject::Scene(path))) => Some(load(path)?),
+        (Some(path), _) | (None, Some(Subject::Scene(path))) => {
+            refuse_inputs(&outputs, std::slice::from_ref(path))?;
+            Some(load(path)?)
+        }
         (None, Some(Subject::Family(_)) | None) => None,
     };
+    if let Some(scene) = &scene {
+        refuse_inputs(&outputs, &scene.sources)?;
+    }
     if let (Some(scene), Some(size)) = (&mut scene, arguments.size) {
         (scene.width, scene.height) = (size.width, size.height);
     }
@@ -196,18 +207,17 @@ pub(super) fn run(arguments: &AccuracyArguments) -> Result<ExitCode> {
         reference_samples,
         samples: steps,
     };
-    if let Some(path) = &arguments.json {
-        let text = serde_json::to_string_pretty(&report).unwrap_or_default() + "\n";
-        if path == Path::new("-") {
-            return print(&text).map(|()| ExitCode::SUCCESS);
-        }
-        write(path, &text)?;
+    if let Some(output) = &html {
+        output.write(page(&report).as_bytes())?;
+        note(&format!("wrote {}", shown_path(output.path())));
     }
-    if let Some(path) = &arguments.output {
-        write(path, &page(&report))?;
-        note(&format!("wrote {}", shown_path(path)));
+    if let Some(output) = &json {
+        write_json(output, &report)?;
     }
-    print(&table(&report))?;
+    // What a program reads stands alone.
+    if !outputs.iter().any(|output| output.is_stdout()) {
+        print(&table(&report))?;
+    }
     Ok(ExitCode::SUCCESS)
 }
 
@@ -235,14 +245,6 @@ fn measure(
         family,
         escalation: Escalation::of(samples),
         rungs: reports,
-    })
-}
-
-fn write(path: &Path, text: &str) -> Result<()> {
-    std::fs::write(path, text).map_err(|error| Error::Image {
-        path: path.into(),
-        reason: format!("cannot be written: {error}"),
-        help: "check that the directory exists and may be written".into(),
     })
 }
 

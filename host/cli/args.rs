@@ -10,10 +10,10 @@ use crate::accuracy::choose::DEFAULT_TOLERANCE;
 use crate::accuracy::families::Family;
 use crate::device::DeviceChoice;
 use crate::error::nearest;
-use crate::film::file::Format;
 use crate::render::paths::EffectChoice;
 use crate::scene::limits::{MAX_BOUNCES, MAX_IMAGE_SIDE, MAX_SAMPLES};
 use crate::scene::tree::Acceleration;
+use crate::write::Format;
 
 /// A ray tracer for spheres, whose kernel is Rust on the GPU and on the CPU.
 #[derive(Debug, Parser)]

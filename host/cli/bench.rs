@@ -1,22 +1,25 @@
 //! `spherule bench`: how fast rays of every kind are here.
 
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use serde::Serialize;
 
 use super::args::BenchArguments;
-use super::{note, print};
-use crate::bench::export::export;
+use super::{note, print, write_json};
+use crate::bench::export::{export, prepare};
 use crate::bench::limit::Limit;
 use crate::bench::measure::{Measured, Plan, Speed, measure};
 use crate::bench::rays::RaySets;
 use crate::bench::scenes::{BenchScene, Source};
 use crate::bench::verify::{Verified, verify};
 use crate::device::Device;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::scene::tree::Acceleration;
 use crate::shown::shown_path;
 use crate::trace::CpuTracer;
+use crate::write::Output;
+use crate::write::same::refuse_inputs;
 use spherule_kernel::Rung;
 
 /// What `--json` writes.
@@ -30,6 +33,7 @@ struct Report<'a> {
 
 pub(super) fn run(arguments: &BenchArguments) -> Result<ExitCode> {
     let size = arguments.size;
+    let json = arguments.json.as_deref().map(Output::new).transpose()?;
     let plan = Plan {
         rung: arguments.precision.into(),
         acceleration: arguments.acceleration.into(),
@@ -53,7 +57,12 @@ pub(super) fn run(arguments: &BenchArguments) -> Result<ExitCode> {
             scene.check_room()?;
         }
     }
+    let outputs: Vec<&Output> = json.iter().collect();
+    let files = names.iter().map(PathBuf::from);
+    let files: Vec<PathBuf> = files.filter(|file| file.exists()).collect();
+    refuse_inputs(&outputs, &files)?;
     if let Some(folder) = &arguments.export {
+        prepare(folder)?;
         for (name, source) in &sources {
             let (scene, reach) = source.load(size.width, size.height)?;
             let tracer = CpuTracer::new(&scene.world.spheres, plan.acceleration);
@@ -70,7 +79,7 @@ pub(super) fn run(arguments: &BenchArguments) -> Result<ExitCode> {
         return compare(arguments, &device, &sources);
     }
     // Numbers that a program reads stand alone.
-    let to_stdout = arguments.json.as_deref() == Some("-".as_ref());
+    let to_stdout = json.as_ref().is_some_and(Output::is_stdout);
     let show = |text: &str| if to_stdout { Ok(()) } else { print(text) };
     let mut limit = None;
     if !arguments.no_limit {
@@ -85,26 +94,18 @@ pub(super) fn run(arguments: &BenchArguments) -> Result<ExitCode> {
     let mut all = Vec::new();
     for (name, source) in &sources {
         let (scene, reach) = source.load(size.width, size.height)?;
+        refuse_inputs(&outputs, &scene.sources)?;
         let measured = measure(&device, name, &scene, reach, plan, limit.as_ref())?;
         show(&row(&measured))?;
         all.push(measured);
     }
-    if let Some(path) = &arguments.json {
+    if let Some(output) = &json {
         let report = Report {
             device: device.name(),
             limit,
             scenes: &all,
         };
-        let text = serde_json::to_string_pretty(&report).unwrap_or_default() + "\n";
-        if to_stdout {
-            print(&text)?;
-        } else {
-            std::fs::write(path, text).map_err(|error| Error::Image {
-                path: path.clone(),
-                reason: format!("cannot be written: {error}"),
-                help: "check that the directory exists and may be written".into(),
-            })?;
-        }
+        write_json(output, &report)?;
     }
     Ok(ExitCode::SUCCESS)
 }

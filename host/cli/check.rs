@@ -7,13 +7,14 @@ use serde::Serialize;
 use spherule_kernel::Rung;
 
 use super::args::CheckArguments;
-use super::print;
+use super::{print, write_json};
 use crate::accuracy::canary::{Canary, Share};
 use crate::accuracy::cases::{Verdict, catalogue};
 use crate::accuracy::scene_cases::SCENE_CASES;
 use crate::accuracy::ulp;
 use crate::device::Device;
 use crate::error::Result;
+use crate::write::Output;
 
 #[derive(Debug, Serialize)]
 struct Report {
@@ -37,8 +38,7 @@ pub(super) fn run(arguments: &CheckArguments) -> Result<ExitCode> {
     let (device, why) = Device::open(&arguments.device)?;
     let report = report(&device, why)?;
     if arguments.json {
-        let text = serde_json::to_string_pretty(&report).unwrap_or_default();
-        print(&format!("{text}\n"))?;
+        write_json(&Output::new("-".as_ref())?, &report)?;
     } else {
         print(&table(&report))?;
     }

@@ -10,7 +10,7 @@ use spherule_kernel::Effects;
 use super::args::ExplainArguments;
 use super::precision::choose_rung;
 use super::progress::Bar;
-use super::{load, note, print};
+use super::{load, note, print, write_json};
 use crate::accuracy::choose::DEFAULT_TOLERANCE;
 use crate::device::Device;
 use crate::error::Result;
@@ -22,6 +22,7 @@ use crate::render::paths::EffectChoice;
 use crate::render::{QUIET, Settings, render};
 use crate::scene::Scene;
 use crate::shown::shown_path;
+use crate::write::Output;
 
 #[derive(Debug, Serialize)]
 struct Report {
@@ -85,8 +86,7 @@ pub(super) fn run(arguments: &ExplainArguments) -> Result<ExitCode> {
     let (device, why) = Device::open(&arguments.device)?;
     let report = report(arguments, scene, &device, &why, until)?;
     if arguments.json {
-        let text = serde_json::to_string_pretty(&report).unwrap_or_default();
-        print(&format!("{text}\n"))?;
+        write_json(&Output::new("-".as_ref())?, &report)?;
     } else {
         print(&table(&report))?;
     }

@@ -20,6 +20,7 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use clap::Parser;
+use serde::Serialize;
 use tracing_subscriber::filter::{LevelFilter, Targets};
 use tracing_subscriber::prelude::*;
 
@@ -28,6 +29,8 @@ use args::{Arguments, Command};
 use crate::error::{Error, Result};
 use crate::plural::count_of;
 use crate::scene::Scene;
+use crate::shown::shown_path;
+use crate::write::Output;
 
 /// Runs the command line of this process; its exit code is for `main` to return.
 ///
@@ -74,20 +77,19 @@ pub fn run(arguments: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> 
     }
 }
 
-/// Prints to stdout; a reader that has gone away is no error, a full disk is.
+/// Prints to stdout.
 fn print(text: &str) -> Result<()> {
-    let mut stdout = std::io::stdout().lock();
-    match stdout
-        .write_all(text.as_bytes())
-        .and_then(|()| stdout.flush())
-    {
-        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => Err(Error::Image {
-            path: "standard output".into(),
-            reason: format!("cannot be written: {error}"),
-            help: "check where it is redirected to".into(),
-        }),
-        _ => Ok(()),
-    }
+    Output::new("-".as_ref())?.write(text.as_bytes())
+}
+
+/// Writes `value` for programs to read.
+fn write_json(output: &Output, value: &impl Serialize) -> Result<()> {
+    let text = serde_json::to_string_pretty(value).map_err(|error| Error::Output {
+        path: output.path().into(),
+        reason: format!("cannot be written as JSON: {error}"),
+        help: "this is a mistake of spherule's; please report it".into(),
+    })?;
+    output.write(format!("{text}\n").as_bytes())
 }
 
 /// Prints to stderr, if anybody listens.
@@ -106,7 +108,7 @@ fn load(path: &Path) -> Result<Scene> {
         .collect();
     tracing::debug!(
         "read {}: {}, {}, {}, {} × {} pixels, {}, effects: [{}]: {:.1?}",
-        path.display(),
+        shown_path(path),
         count_of(scene.world.spheres.len(), "sphere"),
         count_of(scene.world.materials.len(), "material"),
         count_of(scene.lights.len(), "light"),

@@ -9,10 +9,9 @@ use serde::Serialize;
 use super::args::RenderArguments;
 use super::precision::choose_rung;
 use super::progress::Bar;
-use super::{note, print};
+use super::{note, write_json};
 use crate::device::{Device, DeviceChoice};
-use crate::error::{Error, Result, SceneError};
-use crate::film::Image;
+use crate::error::{Error, Result};
 use crate::film::compare::{Comparison, Tolerance};
 use crate::plural::count_of;
 use crate::render::paths::{Reached, StoppedBy};
@@ -20,6 +19,8 @@ use crate::render::{Rendered, Settings, estimate, render};
 use crate::scene::Scene;
 use crate::scene::tree::Acceleration;
 use crate::shown::shown_path;
+use crate::write::same::{refuse_clashes, refuse_inputs};
+use crate::write::{Format, Output, Room};
 
 /// What `--stats` writes.
 #[derive(Debug, Serialize)]
@@ -75,10 +76,11 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<ExitCode> {
         .output
         .clone()
         .unwrap_or_else(|| default_output(&arguments.input));
-    if let Some(stats) = &arguments.stats {
-        refuse_same_file(stats, &[&arguments.input, &output])?;
-    }
-    Image::check_destination(&output)?;
+    let output = Output::image(&output)?;
+    let stats = arguments.stats.as_deref().map(Output::new).transpose()?;
+    let outputs: Vec<&Output> = std::iter::once(&output).chain(&stats).collect();
+    refuse_clashes(&outputs)?;
+    refuse_inputs(&outputs, std::slice::from_ref(&arguments.input))?;
     let (scene, early, load) = std::thread::scope(|scope| {
         let opener =
             opens_early(arguments).then(|| scope.spawn(|| Device::open(&arguments.device)));
@@ -92,6 +94,7 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<ExitCode> {
         (scene, early, load)
     });
     let mut scene = scene?;
+    refuse_inputs(&outputs, &scene.sources)?;
     if let Some(size) = arguments.size {
         (scene.width, scene.height) = (size.width, size.height);
     }
@@ -137,6 +140,12 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<ExitCode> {
         noise: arguments.noise,
     };
 
+    let room = Room::reserve(
+        Format::of(output.path())?,
+        scene.width,
+        scene.height,
+        scene.transparent,
+    )?;
     let rendered = match with_bar(arguments, &scene, settings, &device) {
         Err(error @ Error::RungRefused { .. })
             if arguments.device == DeviceChoice::Auto && !arguments.check =>
@@ -157,9 +166,12 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<ExitCode> {
     );
     let image = &rendered.image;
     let encoding = Instant::now();
-    image.save(&output)?;
+    image.save_to(&output, room)?;
     let encode = encoding.elapsed();
-    tracing::debug!("encoded and wrote {}: {encode:.1?}", output.display());
+    tracing::debug!(
+        "encoded and wrote {}: {encode:.1?}",
+        shown_path(output.path())
+    );
     let total = started.elapsed();
 
     if let Some((near, far)) = image.depth_range() {
@@ -194,7 +206,7 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<ExitCode> {
     };
     say(&format!(
         "wrote {}: {} × {} pixels{samples}, {}, {}",
-        shown_path(&output),
+        shown_path(output.path()),
         image.width(),
         image.height(),
         count_of(scene.world.spheres.len(), "sphere"),
@@ -205,13 +217,13 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<ExitCode> {
         .map(|other| check(arguments, &scene, settings, &other, &rendered))
         .transpose()?;
     let passed = check.as_ref().is_none_or(|check| check.passed);
-    if let Some(path) = &arguments.stats {
+    if let Some(output) = stats {
         // Camera rays; light paths go on from there.
         let samples = rendered.reached.map_or(1, |reached| reached.samples);
         let rays = u64::from(scene.width) * u64::from(scene.height) * u64::from(samples);
         let trace = rendered.timings.trace.as_secs_f64();
-        write_stats(
-            path,
+        write_json(
+            &output,
             &Stats {
                 device: device.name(),
                 backend: device.backend(),
@@ -269,20 +281,6 @@ fn with_bar(
     render(scene, settings, device, &|done| bar.set(done))
 }
 
-/// Statistics must not land in the scene or in the image.
-fn refuse_same_file(stats: &Path, others: &[&Path]) -> Result<()> {
-    let full = |path: &Path| std::path::absolute(path).unwrap_or_else(|_| path.into());
-    if others.iter().any(|other| full(stats) == full(other)) {
-        return Err(SceneError::without_place(
-            stats,
-            "--stats names the same file as the input or the image",
-            "give the statistics a file of their own",
-        )
-        .into());
-    }
-    Ok(())
-}
-
 /// Renders on the other path and compares.
 fn check(
     arguments: &RenderArguments,
@@ -322,20 +320,6 @@ fn check(
         comparison,
         passed,
     })
-}
-
-fn write_stats(path: &Path, stats: &Stats) -> Result<()> {
-    let failed = |reason: String| Error::Image {
-        path: path.into(),
-        reason,
-        help: "check that the directory exists and may be written".into(),
-    };
-    let text =
-        serde_json::to_string_pretty(stats).map_err(|error| failed(error.to_string()))? + "\n";
-    if path == Path::new("-") {
-        return print(&text);
-    }
-    std::fs::write(path, text).map_err(|error| failed(format!("cannot be written: {error}")))
 }
 
 /// The input's name with `.png`, in the current directory.

@@ -19,23 +19,8 @@ impl Image {
     /// keep the background, through the curve for light.
     #[must_use]
     pub fn to_rgb8(&self) -> Vec<u8> {
-        let encoder = Encoder::of(self);
         let mut bytes = vec![0; self.pixels.len() * 3];
-        bytes
-            .par_chunks_mut(3 << 12)
-            .zip(self.pixels.par_chunks(1 << 12))
-            .for_each(|(bytes, pixels)| {
-                let curve = Curve::get();
-                // Neighbours often have one colour.
-                let mut last = Pixel::default();
-                let mut encoded = encoder.encode_bytes(curve, &last);
-                for (bytes, pixel) in bytes.chunks_exact_mut(3).zip(pixels) {
-                    if *pixel != last {
-                        (last, encoded) = (*pixel, encoder.encode_bytes(curve, pixel));
-                    }
-                    bytes.copy_from_slice(&encoded);
-                }
-            });
+        Encoder::of(self).encode_rgb8(self, 0, &mut bytes);
         bytes
     }
 
@@ -43,22 +28,9 @@ impl Image {
     /// PNG has it.
     #[must_use]
     pub fn to_rgba8(&self) -> Vec<u8> {
-        let encoder = Encoder::of(self);
-        let byte = |value: f32| (value.clamp(0.0, 1.0) * 255.0 + 0.5) as u8;
-        self.pixels
-            .par_iter()
-            .enumerate()
-            .flat_map_iter(|(index, pixel)| {
-                let alpha = self.opacity(index);
-                let straight = if alpha > 0.0 {
-                    Pixel::new(pixel.color() / alpha, pixel.depth())
-                } else {
-                    Pixel::new(Vec3::ZERO, pixel.depth())
-                };
-                let [r, g, b] = encoder.encode(&straight).map(byte);
-                [r, g, b, byte(alpha)]
-            })
-            .collect()
+        let mut bytes = vec![0; self.pixels.len() * 4];
+        Encoder::of(self).encode_rgba8(self, 0, &mut bytes);
+        bytes
     }
 
     /// The nearest and the farthest distance that the image shows, in scene units; `None`
@@ -81,7 +53,7 @@ impl Image {
 
 /// Encodes the pixels of one image, or of several with a common depth range.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Encoder {
+pub(crate) struct Encoder {
     shading: Shading,
     /// What light is multiplied by.
     exposure: f32,
@@ -91,7 +63,7 @@ pub(super) struct Encoder {
 }
 
 impl Encoder {
-    pub(super) fn of(image: &Image) -> Self {
+    pub(crate) fn of(image: &Image) -> Self {
         let (near, far) = image.depth_range().unwrap_or((0.0, 0.0));
         Self {
             shading: image.shading,
@@ -110,6 +82,54 @@ impl Encoder {
             far: first.far.max(second.far),
             ..first
         }
+    }
+
+    /// As [`Image::to_rgb8`], of the pixels from the one with the index `first` on.
+    pub(crate) fn encode_rgb8(&self, image: &Image, first: usize, bytes: &mut [u8]) {
+        self.encode_pixels::<3>(&image.pixels[first..], bytes, |_, pixel| *pixel, |_| 0);
+    }
+
+    /// As [`Image::to_rgba8`], of the pixels from the one with the index `first` on.
+    pub(crate) fn encode_rgba8(&self, image: &Image, first: usize, bytes: &mut [u8]) {
+        let straight = |index, pixel: &Pixel| match image.opacity(first + index) {
+            alpha if alpha > 0.0 => Pixel::new(pixel.color() / alpha, pixel.depth()),
+            _ => Pixel::new(Vec3::ZERO, pixel.depth()),
+        };
+        let alpha = |index| (image.opacity(first + index).clamp(0.0, 1.0) * 255.0 + 0.5) as u8;
+        self.encode_pixels::<4>(&image.pixels[first..], bytes, straight, alpha);
+    }
+
+    /// Fills `bytes` with `N` channels of as many pixels as there is room for: the colours of what `straight` makes
+    /// of each, and then, if there is one channel more, `alpha`.
+    fn encode_pixels<const N: usize>(
+        &self,
+        pixels: &[Pixel],
+        bytes: &mut [u8],
+        straight: impl Fn(usize, &Pixel) -> Pixel + Sync,
+        alpha: impl Fn(usize) -> u8 + Sync,
+    ) {
+        const AT_ONCE: usize = 1 << 12;
+        bytes
+            .par_chunks_mut(N * AT_ONCE)
+            .zip(pixels.par_chunks(AT_ONCE))
+            .enumerate()
+            .for_each(|(chunk, (bytes, pixels))| {
+                let curve = Curve::get();
+                // Neighbours often have one colour.
+                let mut last = Pixel::default();
+                let mut encoded = self.encode_bytes(curve, &last);
+                for (at, (bytes, pixel)) in bytes.chunks_exact_mut(N).zip(pixels).enumerate() {
+                    let index = chunk * AT_ONCE + at;
+                    let pixel = straight(index, pixel);
+                    if pixel != last {
+                        (last, encoded) = (pixel, self.encode_bytes(curve, &pixel));
+                    }
+                    bytes[..3].copy_from_slice(&encoded);
+                    if N > 3 {
+                        bytes[3] = alpha(index);
+                    }
+                }
+            });
     }
 
     /// The pixel's channels as bytes, rounded to nearest; a NaN becomes 0.

@@ -3,13 +3,11 @@
 //! | module | holds |
 //! | --- | --- |
 //! | [`encode`] | from pixels to 8-bit colours |
-//! | [`mod@file`] | PNG and EXR files, written whole or not at all |
 //! | [`compare`] | the difference between two images |
 //! | [`flip`] | that difference as somebody sees it |
 
 pub mod compare;
 pub mod encode;
-pub mod file;
 pub mod flip;
 
 use bytemuck::Zeroable;

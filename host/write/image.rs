@@ -1,18 +1,12 @@
-//! PNG and EXR files, written whole or not at all.
+//! Images as files: their kinds, and the memory that writing one takes.
 
-use std::io::{BufWriter, Seek, Write};
 use std::path::Path;
 
-use image::codecs::openexr::OpenExrEncoder;
-use image::codecs::png::{CompressionType, FilterType, PngEncoder};
-use image::{ExtendedColorType, ImageEncoder};
-
-use super::Image;
+use super::output::{Failure, Output};
+use super::sink::Sink;
+use super::{exr, png};
 use crate::error::{Error, Result};
-use crate::shown::shown_path;
-
-/// How rows are prepared for compression: to choose anew for each row takes as long as to compress them.
-const FILTER: FilterType = FilterType::Up;
+use crate::film::Image;
 
 /// A kind of image file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,7 +22,7 @@ impl Format {
     ///
     /// # Errors
     ///
-    /// [`Error::Image`] if it names none that can be written.
+    /// [`Error::OutputRefused`] if it names none that can be written.
     pub fn of(path: &Path) -> Result<Self> {
         let extension = path
             .extension()
@@ -36,149 +30,95 @@ impl Format {
         match extension.as_deref() {
             Some("png") => Ok(Self::Png),
             Some("exr") => Ok(Self::Exr),
-            _ => Err(failed(
-                path,
-                "not a kind of image that spherule writes",
-                "give a name that ends in .png or .exr",
-            )),
+            _ => Err(Error::OutputRefused {
+                path: path.into(),
+                reason: "not a kind of image that spherule writes".into(),
+                help: "give a name that ends in .png or .exr".into(),
+            }),
         }
+    }
+
+    /// The bytes of a file of this kind that could not be compressed at all.
+    fn most(self, image: &Image) -> u64 {
+        let has_alpha = image.alpha().is_some();
+        match self {
+            Self::Png => png::most(image.width(), image.height(), has_alpha),
+            Self::Exr => exr::most(image.width(), image.height(), has_alpha),
+        }
+    }
+}
+
+/// Memory that is kept until an image is written, so that one which took long is not lost for want of it.
+#[derive(Debug)]
+pub struct Room {
+    /// Asked for and never touched; freed when the image is written.
+    _bytes: Vec<u8>,
+}
+
+impl Room {
+    /// Room to write an image of `width` × `height` pixels, with opacities or without.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::OutOfMemory`] if the host has not that much.
+    pub fn reserve(format: Format, width: u32, height: u32, has_alpha: bool) -> Result<Self> {
+        let encoder = match format {
+            Format::Png => png::room(width, has_alpha),
+            Format::Exr => exr::room(width, height, has_alpha),
+        };
+        let needed = encoder + Sink::BUFFER as u64;
+        let mut bytes = Vec::new();
+        usize::try_from(needed)
+            .ok()
+            .and_then(|needed| bytes.try_reserve_exact(needed).ok())
+            .ok_or_else(|| out_of_memory(needed))?;
+        Ok(Self { _bytes: bytes })
+    }
+}
+
+/// The host has not as many bytes as writing an image takes.
+pub(super) fn out_of_memory(needed: u64) -> Error {
+    Error::OutOfMemory {
+        device: "the host".into(),
+        during: format!(
+            "making room to write the image, {:.1} MiB",
+            needed as f64 / f64::from(1 << 20)
+        ),
     }
 }
 
 impl Image {
-    /// Writes the image to `path`, as its extension says. The file appears whole or not at all:
-    /// it is written beside its place under a temporary name, then renamed.
+    /// Writes the image to `path`, as its extension says, by way of [`Output`]: the file appears whole or not at all.
     ///
     /// # Errors
     ///
-    /// [`Error::Image`] if the extension is unknown or the file cannot be written.
+    /// [`Error::OutputRefused`] if the extension is unknown, [`Error::Output`] if the file cannot be written,
+    /// [`Error::OutOfMemory`] if there is no memory for its rows.
     pub fn save(&self, path: impl AsRef<Path>) -> Result<()> {
-        let path = path.as_ref();
-        let format = Format::of(path)?;
-        Self::check_destination(path)?;
-        let cannot_write = |error: std::io::Error| {
-            // The kind alone: the rest names the temporary file.
-            failed(
-                path,
-                format!("cannot be written: {}", error.kind()),
-                "check that the directory exists, may be written and has room",
-            )
-        };
-        let mut builder = tempfile::Builder::new();
-        builder.prefix(".spherule-");
-        // What any new file gets, less the umask, instead of a temporary file's privacy.
-        #[cfg(unix)]
-        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-        let mut file = builder
-            .tempfile_in(directory_of(path))
-            .map_err(cannot_write)?;
-        {
-            let mut writer = BufWriter::with_capacity(1 << 20, file.as_file_mut());
-            self.encode_as(format, &mut writer)
-                .map_err(|error| match error {
-                    image::ImageError::IoError(error) => cannot_write(error),
-                    other => failed(
-                        path,
-                        format!("cannot be encoded: {other}"),
-                        "try another size or format",
-                    ),
-                })?;
-            writer.flush().map_err(cannot_write)?;
-        }
-        file.persist(path)
-            .map_err(|error| cannot_write(error.error))?;
-        Ok(())
+        let output = Output::image(path.as_ref())?;
+        let has_alpha = self.alpha().is_some();
+        let format = Format::of(output.path())?;
+        let room = Room::reserve(format, self.width(), self.height(), has_alpha)?;
+        self.save_to(&output, room)
     }
 
-    /// Whether an image can be written to `path`, as far as that can be told beforehand.
+    /// Writes the image to `output`, as its extension says, with memory that was kept for it.
     ///
     /// # Errors
     ///
-    /// [`Error::Image`] if the extension is unknown, the path is a directory, or its directory does
-    /// not exist.
-    pub fn check_destination(path: &Path) -> Result<()> {
-        Format::of(path)?;
-        if path.is_dir() {
-            return Err(failed(path, "is a directory", "name a file"));
-        }
-        let directory = directory_of(path);
-        if !directory.is_dir() {
-            return Err(failed(
-                path,
-                format!(
-                    "cannot be written: there is no directory {}",
-                    shown_path(directory)
-                ),
-                "make the directory, or name another",
-            ));
-        }
-        Ok(())
-    }
-
-    fn encode_as(
-        &self,
-        format: Format,
-        writer: &mut (impl Write + Seek),
-    ) -> image::ImageResult<()> {
-        match format {
-            Format::Png if self.alpha().is_some() => {
-                PngEncoder::new_with_quality(writer, CompressionType::Fast, FILTER).write_image(
-                    &self.to_rgba8(),
-                    self.width,
-                    self.height,
-                    ExtendedColorType::Rgba8,
-                )
+    /// As [`Image::save`].
+    pub fn save_to(&self, output: &Output, room: Room) -> Result<()> {
+        let format = Format::of(output.path())?;
+        // From here on it is for the encoder.
+        drop(room);
+        output.fill(format.most(self), |sink, trouble| {
+            if self.pixels().is_empty() {
+                return Err(Failure::Encoding("it has no pixels".into()));
             }
-            Format::Png => PngEncoder::new_with_quality(writer, CompressionType::Fast, FILTER)
-                .write_image(
-                    &self.to_rgb8(),
-                    self.width,
-                    self.height,
-                    ExtendedColorType::Rgb8,
-                ),
-            // OpenEXR's colours are premultiplied, as ours.
-            Format::Exr if let Some(alpha) = self.alpha() => {
-                let floats: Vec<f32> = self
-                    .pixels
-                    .iter()
-                    .zip(alpha)
-                    .flat_map(|(pixel, alpha)| pixel.color().extend(*alpha).to_array())
-                    .collect();
-                OpenExrEncoder::new(writer).write_image(
-                    bytemuck::cast_slice(&floats),
-                    self.width,
-                    self.height,
-                    ExtendedColorType::Rgba32F,
-                )
+            match format {
+                Format::Png => png::write(self, sink, trouble),
+                Format::Exr => exr::write(self, sink, trouble),
             }
-            Format::Exr => {
-                let floats: Vec<f32> = self
-                    .pixels
-                    .iter()
-                    .flat_map(|pixel| pixel.color().to_array())
-                    .collect();
-                OpenExrEncoder::new(writer).write_image(
-                    bytemuck::cast_slice(&floats),
-                    self.width,
-                    self.height,
-                    ExtendedColorType::Rgb32F,
-                )
-            }
-        }
-    }
-}
-
-fn directory_of(path: &Path) -> &Path {
-    match path.parent() {
-        Some(parent) if !parent.as_os_str().is_empty() => parent,
-        _ => Path::new("."),
-    }
-}
-
-fn failed(path: &Path, reason: impl Into<String>, help: impl Into<String>) -> Error {
-    Error::Image {
-        path: path.into(),
-        reason: reason.into(),
-        help: help.into(),
+        })
     }
 }

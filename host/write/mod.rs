@@ -1,0 +1,31 @@
+//! Outputs: checked before the work, written whole or not at all.
+//!
+//! | module | holds |
+//! | --- | --- |
+//! | [`output`] | [`Output`]: where something goes, what is checked about it, and how it gets there |
+//! | [`same`] | which names are one file: outputs that clash, and outputs that are inputs |
+//! | [`image`] | [`Image::save`](crate::Image::save): kinds of image files, and the memory that writing one takes |
+//! | `png`, `exr` | their encoders, which hold a few rows at once |
+//! | `sink` | what encoders write into |
+//! | `temporary` | files under a temporary name |
+
+mod exr;
+pub mod image;
+pub mod output;
+mod png;
+pub mod same;
+mod sink;
+mod temporary;
+
+use std::path::Path;
+
+pub use image::{Format, Room};
+pub use output::Output;
+
+/// The directory that a file of this name is in.
+fn directory_of(path: &Path) -> &Path {
+    match path.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
+    }
+}

@@ -1,0 +1,225 @@
+//! Files under a temporary name, beside the place that they are for.
+//!
+//! Each is locked for as long as its writer lives, so that a name like theirs whose lock can be taken was left by a
+//! run that was killed: the next one that writes to the directory removes it.
+
+use std::ffi::OsStr;
+use std::fs::{self, File, OpenOptions, TryLockError};
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use tempfile::NamedTempFile;
+
+const PREFIX: &str = ".spherule-";
+const SUFFIX: &str = ".part";
+const RANDOM: usize = 6;
+
+/// The temporary files that there are now. Who holds the lock makes, renames and removes them.
+static LIVE: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
+fn live() -> MutexGuard<'static, Vec<PathBuf>> {
+    LIVE.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// A file under a temporary name; dropped, it is gone.
+#[derive(Debug)]
+pub(super) struct Temporary {
+    file: Option<NamedTempFile>,
+}
+
+impl Temporary {
+    /// A new file in `directory`, with what rights any new file gets.
+    pub(super) fn in_directory(directory: &Path) -> io::Result<Self> {
+        let mut builder = tempfile::Builder::new();
+        builder.prefix(PREFIX).suffix(SUFFIX).rand_bytes(RANDOM);
+        // What any new file gets, less the umask, instead of a temporary file's privacy.
+        #[cfg(unix)]
+        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+        loop {
+            let mut live = live();
+            let file = builder.tempfile_in(directory)?;
+            match file.as_file().try_lock() {
+                Ok(()) if !is_linked(file.as_file()) => {}
+                // Another run looks whether the file is dead, and removes it.
+                Err(TryLockError::WouldBlock) => {}
+                // A file system without locks: nobody else can take this one either.
+                Ok(()) | Err(TryLockError::Error(_)) => {
+                    live.push(file.path().into());
+                    return Ok(Self { file: Some(file) });
+                }
+            }
+        }
+    }
+
+    pub(super) fn file(&mut self) -> io::Result<&mut File> {
+        match &mut self.file {
+            Some(file) => Ok(file.as_file_mut()),
+            None => Err(io::ErrorKind::NotFound.into()),
+        }
+    }
+
+    /// Gives the file the name `target`, which has either the old content or the new one at any time, even if the
+    /// machine stops.
+    pub(super) fn rename_to(mut self, target: &Path) -> io::Result<()> {
+        sync(self.file()?)?;
+        let mut live = live();
+        let Some(file) = self.file.take() else {
+            return Err(io::ErrorKind::NotFound.into());
+        };
+        let path = file.path().to_path_buf();
+        // Where that fails, the error holds the file and removes it.
+        let renamed = file.persist(target);
+        live.retain(|one| *one != path);
+        renamed.map_err(|error| error.error)?;
+        drop(live);
+        sync_directory(super::directory_of(target))
+    }
+}
+
+impl Drop for Temporary {
+    fn drop(&mut self) {
+        if let Some(file) = self.file.take() {
+            let mut live = live();
+            let path = file.path().to_path_buf();
+            drop(file);
+            live.retain(|one| *one != path);
+        }
+    }
+}
+
+/// Removes from `directory` what runs of the user that owns `own` left when they were killed.
+pub(super) fn remove_dead(directory: &Path, own: &mut Temporary) {
+    let Some(own) = own.file().ok().and_then(|file| file.metadata().ok()) else {
+        return;
+    };
+    for entry in fs::read_dir(directory).into_iter().flatten().flatten() {
+        if is_temporary(&entry.file_name()) {
+            // What cannot be told or removed stays; it harms nobody.
+            let _ = remove_if_dead(&entry.path(), &own);
+        }
+    }
+}
+
+fn remove_if_dead(path: &Path, own: &fs::Metadata) -> io::Result<()> {
+    let about = fs::symlink_metadata(path)?;
+    if !about.is_file() || !has_owner_of(&about, own) {
+        return Ok(());
+    }
+    let file = OpenOptions::new().read(true).write(true).open(path)?;
+    if file.try_lock().is_ok() {
+        fs::remove_file(path)?;
+    }
+    Ok(())
+}
+
+/// Whether a file has a name as [`Temporary`] gives them.
+fn is_temporary(name: &OsStr) -> bool {
+    name.to_str()
+        .and_then(|name| name.strip_prefix(PREFIX)?.strip_suffix(SUFFIX))
+        .is_some_and(|random| {
+            random.len() == RANDOM && random.bytes().all(|b| b.is_ascii_alphanumeric())
+        })
+}
+
+#[cfg(unix)]
+fn is_linked(file: &File) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    file.metadata().is_ok_and(|about| about.nlink() > 0)
+}
+
+/// An open file cannot be removed there.
+#[cfg(not(unix))]
+fn is_linked(_file: &File) -> bool {
+    true
+}
+
+#[cfg(unix)]
+fn has_owner_of(one: &fs::Metadata, other: &fs::Metadata) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    one.uid() == other.uid()
+}
+
+/// Only the owner can take the lock and remove the file.
+#[cfg(not(unix))]
+fn has_owner_of(_one: &fs::Metadata, _other: &fs::Metadata) -> bool {
+    true
+}
+
+/// Waits until the file is on the disk, where the file system can say so.
+fn sync(file: &File) -> io::Result<()> {
+    match file.sync_all() {
+        Err(error)
+            if matches!(
+                error.kind(),
+                io::ErrorKind::InvalidInput | io::ErrorKind::Unsupported
+            ) =>
+        {
+            Ok(())
+        }
+        done => done,
+    }
+}
+
+#[cfg(unix)]
+fn sync_directory(directory: &Path) -> io::Result<()> {
+    // A directory may be written without being read.
+    File::open(directory).map_or(Ok(()), |directory| sync(&directory))
+}
+
+/// A directory is no file that can be waited for there.
+#[cfg(not(unix))]
+fn sync_directory(_directory: &Path) -> io::Result<()> {
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn names(directory: &Path) -> Vec<String> {
+        let entries = fs::read_dir(directory).expect("a directory").flatten();
+        let mut names: Vec<String> = entries
+            .map(|entry| entry.file_name().to_string_lossy().into())
+            .collect();
+        names.sort();
+        names
+    }
+
+    #[test]
+    fn only_the_dead_are_removed() {
+        let directory = tempfile::tempdir().expect("a directory");
+        let path = directory.path();
+        let mut own = Temporary::in_directory(path).expect("a file");
+        let live = Temporary::in_directory(path).expect("a file");
+        let own_name = own.file.as_ref().expect("a file").path().to_path_buf();
+        let live_name = live.file.as_ref().expect("a file").path().to_path_buf();
+        let others = [
+            ".spherule-notes.txt",
+            ".spherule-abc.part",
+            ".spherule-abc-de.part",
+            "spherule-abcdef.part",
+        ];
+        for name in others.into_iter().chain([".spherule-abcdef.part"]) {
+            fs::write(path.join(name), "x").expect("a file");
+        }
+        fs::create_dir(path.join(".spherule-folder.part")).expect("a directory");
+        remove_dead(path, &mut own);
+        assert!(!path.join(".spherule-abcdef.part").exists());
+        assert!(own_name.exists() && live_name.exists());
+        assert_eq!(names(path).len(), others.len() + 3);
+    }
+
+    #[test]
+    fn a_file_is_renamed_or_gone() {
+        let directory = tempfile::tempdir().expect("a directory");
+        drop(Temporary::in_directory(directory.path()).expect("a file"));
+        let file = Temporary::in_directory(directory.path()).expect("a file");
+        file.rename_to(&directory.path().join("out"))
+            .expect("renamed");
+        let file = Temporary::in_directory(directory.path()).expect("a file");
+        fs::create_dir(directory.path().join("folder")).expect("a directory");
+        assert!(file.rename_to(&directory.path().join("folder")).is_err());
+        assert_eq!(names(directory.path()), ["folder", "out"]);
+    }
+}

@@ -1,0 +1,430 @@
+//! Outputs: checked before the work, whole or not at all, and never in place of an input.
+#![cfg(unix)]
+
+use std::fs;
+use std::os::unix::fs::{FileTypeExt, MetadataExt, PermissionsExt, symlink};
+use std::path::{Path, PathBuf};
+use std::process::Child;
+use std::time::{Duration, Instant};
+
+use assert_cmd::Command;
+use assert_cmd::cargo::cargo_bin;
+use predicates::prelude::*;
+use predicates::str::contains;
+
+/// The command, in a directory of its own.
+fn spherule(directory: &Path) -> Command {
+    let mut command = Command::new(cargo_bin("spherule"));
+    command.env_remove("SPHERULE_LOG").current_dir(directory);
+    command
+}
+
+fn temporary() -> tempfile::TempDir {
+    tempfile::tempdir().expect("a temporary directory")
+}
+
+const SPHERE: &str = "[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\n";
+
+/// A directory with a small scene, `scene.toml`.
+fn with_scene() -> tempfile::TempDir {
+    let directory = temporary();
+    let text = format!("[image]\nwidth = 16\nheight = 9\n{SPHERE}");
+    fs::write(directory.path().join("scene.toml"), text).expect("a scene");
+    directory
+}
+
+/// What is in the directory, in the order of the alphabet.
+fn names(directory: &Path) -> Vec<String> {
+    let entries = fs::read_dir(directory).expect("a directory").flatten();
+    let mut names: Vec<String> = entries
+        .map(|entry| entry.file_name().to_string_lossy().into())
+        .collect();
+    names.sort();
+    names
+}
+
+const RENDER: [&str; 5] = ["render", "scene.toml", "--device", "cpu", "-o"];
+const ACCURACY: [&str; 5] = ["accuracy", "--device", "cpu", "--rays", "1000"];
+const BENCH: [&str; 6] = ["bench", "--device", "cpu", "--no-limit", "--scene", "S2"];
+
+#[test]
+fn outputs_are_checked_before_the_work() {
+    let directory = with_scene();
+    let path = directory.path();
+    fs::create_dir(path.join("folder.png")).expect("a directory");
+    fs::write(path.join("protected.png"), "old").expect("a file");
+    let read_only = fs::Permissions::from_mode(0o444);
+    fs::set_permissions(path.join("protected.png"), read_only).expect("permissions");
+    let cases: [(&[&str], &[&str], &str); 10] = [
+        (&RENDER, &["no/out.png"], "there is no directory no"),
+        (&RENDER, &["folder.png"], "is a directory"),
+        (&RENDER, &["protected.png"], "is read-only"),
+        (
+            &RENDER,
+            &["out.png", "--stats", "no/s.json"],
+            "there is no directory no",
+        ),
+        (
+            &RENDER,
+            &["out.png", "--stats", "folder.png"],
+            "is a directory",
+        ),
+        (
+            &ACCURACY,
+            &["-o", "no/page.html"],
+            "there is no directory no",
+        ),
+        (
+            &ACCURACY,
+            &["--json", "no/n.json"],
+            "there is no directory no",
+        ),
+        (&ACCURACY, &["--json", "protected.png"], "is read-only"),
+        (&BENCH, &["--json", "no/n.json"], "there is no directory no"),
+        (&BENCH, &["--export", "scene.toml/folder"], "cannot be made"),
+    ];
+    for (command, rest, message) in cases {
+        spherule(path)
+            .args(command)
+            .args(rest)
+            .assert()
+            .code(1)
+            .stdout("")
+            .stderr(
+                contains(message)
+                    .and(contains("help: "))
+                    .and(contains("rendering on").not())
+                    .and(contains("measuring").not()),
+            );
+    }
+    assert_eq!(names(path), ["folder.png", "protected.png", "scene.toml"]);
+    assert_eq!(
+        fs::read(path.join("protected.png")).expect("a file"),
+        b"old"
+    );
+}
+
+/// A folder without rights is refused before the work, too; to root nothing is forbidden.
+#[test]
+fn a_folder_that_may_not_be_written_is_refused_before_the_work() {
+    let directory = with_scene();
+    let path = directory.path();
+    let closed = path.join("closed");
+    fs::create_dir(&closed).expect("a directory");
+    fs::set_permissions(&closed, fs::Permissions::from_mode(0o555)).expect("permissions");
+    if fs::write(closed.join("probe"), "").is_ok() {
+        eprintln!("skipped a_folder_that_may_not_be_written_is_refused_before_the_work: root");
+        return;
+    }
+    spherule(path)
+        .args(RENDER)
+        .args(["closed/out.png"])
+        .assert()
+        .code(1)
+        .stderr(contains("no file can be made in closed").and(contains("rendering on").not()));
+}
+
+/// Scene, particles and sky, by their names, another spelling, a symlink and a hard link.
+#[test]
+fn no_output_replaces_an_input() {
+    let directory = temporary();
+    let path = directory.path();
+    fs::create_dir(path.join("sub")).expect("a directory");
+    let scene = "[image]\nwidth = 8\nheight = 8\nsamples = 1\n[sky]\nimage = \"sky.exr\"\n\
+         [particles]\nfile = \"atoms.xyz\"\n";
+    fs::write(path.join("scene.toml"), scene).expect("a scene");
+    fs::write(path.join("atoms.xyz"), "1\n\nC 0 0 0\n").expect("atoms");
+    image::Rgb32FImage::from_pixel(4, 2, image::Rgb([0.5; 3]))
+        .save(path.join("sky.exr"))
+        .expect("a sky");
+    let inputs = ["scene.toml", "atoms.xyz", "sky.exr"];
+    let content = || inputs.map(|input| fs::read(path.join(input)).expect("an input"));
+    let before = content();
+    for input in inputs {
+        let end = Path::new(input).extension().expect("an extension");
+        let linked = |name: &str| PathBuf::from(name).with_extension(end);
+        symlink(input, path.join(linked("soft"))).expect("a symlink");
+        fs::hard_link(path.join(input), path.join(linked("hard"))).expect("a hard link");
+        let whole = path.join(input);
+        let spelled = Path::new("sub/..").join(input);
+        let others = [linked("soft"), linked("hard")];
+        for output in [Path::new(input), &spelled, &whole, &others[0], &others[1]] {
+            let refused = |arguments: &[&str]| {
+                spherule(path)
+                    .args(arguments)
+                    .arg(output)
+                    .assert()
+                    .code(2)
+                    .stdout("")
+                    .stderr(contains("is the same file as the input").and(contains("help: ")));
+            };
+            refused(&["render", "scene.toml", "--device", "cpu", "--stats"]);
+            refused(&[
+                "accuracy",
+                "--device",
+                "cpu",
+                "--scene",
+                "scene.toml",
+                "--json",
+            ]);
+            refused(&["accuracy", "--device", "cpu", "--scene", "scene.toml", "-o"]);
+            refused(&[
+                "accuracy",
+                "--device",
+                "cpu",
+                "--samples",
+                "scene.toml",
+                "-o",
+            ]);
+            if input == "sky.exr" {
+                refused(&["render", "scene.toml", "--device", "cpu", "-o"]);
+            }
+        }
+    }
+    spherule(path)
+        .args(["bench", "--device", "cpu", "--no-limit", "--scene"])
+        .args(["scene.toml", "--json", "soft.xyz"])
+        .assert()
+        .code(2)
+        .stderr(contains("is the same file as the input atoms.xyz"));
+    assert_eq!(content(), before);
+}
+
+#[test]
+fn two_outputs_are_two_files() {
+    let directory = with_scene();
+    let path = directory.path();
+    symlink("out.png", path.join("link.json")).expect("a symlink");
+    for stats in ["out.png", "./out.png", "link.json"] {
+        spherule(path)
+            .args(RENDER)
+            .args(["out.png", "--stats", stats])
+            .assert()
+            .code(2)
+            .stderr(contains("is the same file as the output out.png"));
+    }
+    spherule(path)
+        .args(ACCURACY)
+        .args(["--scene", "far", "-o", "-", "--json", "-"])
+        .assert()
+        .code(2)
+        .stdout("")
+        .stderr(contains("standard output"));
+    assert_eq!(names(path), ["link.json", "scene.toml"]);
+}
+
+#[test]
+fn numbers_to_stdout_and_a_page_to_a_file() {
+    let directory = temporary();
+    let path = directory.path();
+    let assert = spherule(path)
+        .args(ACCURACY)
+        .args(["--scene", "far", "--json", "-", "-o", "page.html"])
+        .assert()
+        .success();
+    let numbers: serde_json::Value =
+        serde_json::from_slice(&assert.get_output().stdout).expect("nothing but JSON");
+    assert_eq!(numbers["families"][0]["family"], "far");
+    let page = fs::read_to_string(path.join("page.html")).expect("the page");
+    assert!(page.ends_with("</html>\n"));
+}
+
+/// What is overwritten keeps its permissions, its symlink, its nature.
+#[test]
+fn overwriting_keeps_what_the_old_file_was() {
+    let directory = with_scene();
+    let path = directory.path();
+    let mode = |name: &str| fs::metadata(path.join(name)).expect("a file").mode() & 0o777;
+    let render = |output: &str, stats: &str| {
+        spherule(path)
+            .args(RENDER)
+            .args([output, "--stats", stats])
+            .assert()
+            .success();
+    };
+    // New files get what any new file gets.
+    fs::write(path.join("new"), "").expect("a file");
+    render("out.png", "stats.json");
+    assert_eq!([mode("out.png"), mode("stats.json")], [mode("new"); 2]);
+    for (name, kept) in [("out.png", 0o600), ("stats.json", 0o640)] {
+        fs::set_permissions(path.join(name), fs::Permissions::from_mode(kept)).expect("a mode");
+    }
+    fs::hard_link(path.join("out.png"), path.join("other.png")).expect("a hard link");
+    let old = fs::metadata(path.join("other.png")).expect("a file").ino();
+    render("out.png", "stats.json");
+    assert_eq!([mode("out.png"), mode("stats.json")], [0o600, 0o640]);
+    // The other name keeps the old content.
+    assert_eq!(
+        fs::metadata(path.join("other.png")).expect("a file").ino(),
+        old
+    );
+    assert_ne!(
+        fs::metadata(path.join("out.png")).expect("a file").ino(),
+        old
+    );
+
+    fs::create_dir(path.join("far")).expect("a directory");
+    symlink("far/target.png", path.join("link.png")).expect("a symlink");
+    symlink("link.png", path.join("chain.png")).expect("a symlink");
+    render("chain.png", "/dev/null");
+    render("link.png", "/dev/null");
+    for name in ["chain.png", "link.png"] {
+        let about = fs::symlink_metadata(path.join(name)).expect("a link");
+        assert!(about.is_symlink(), "{name}");
+    }
+    let target = path.join("far/target.png");
+    assert!(fs::symlink_metadata(&target).expect("a file").is_file());
+    image::open(&target).expect("an image");
+    assert_eq!(names(&path.join("far")), ["target.png"]);
+    let null = fs::metadata("/dev/null").expect("a device");
+    assert!(null.file_type().is_char_device());
+}
+
+#[test]
+fn a_pipe_is_written_into() {
+    let directory = with_scene();
+    let path = directory.path();
+    for name in ["out.exr", "out.png"] {
+        let pipe = path.join(name);
+        let made = std::process::Command::new("mkfifo").arg(&pipe).status();
+        assert!(made.expect("mkfifo").success());
+        let reader = {
+            let pipe = pipe.clone();
+            std::thread::spawn(move || fs::read(pipe).expect("what was written"))
+        };
+        spherule(path).args(RENDER).arg(name).assert().success();
+        // Otherwise the reader waits for ever.
+        let about = fs::symlink_metadata(&pipe).expect("a pipe");
+        assert!(about.file_type().is_fifo(), "it was replaced");
+        let read = reader.join().expect("a reader");
+        image::load_from_memory(&read).expect("an image");
+    }
+    let assert = spherule(path)
+        .args(RENDER)
+        .args(["plain.png", "--stats", "/dev/stdout"])
+        .assert()
+        .success();
+    let stats: serde_json::Value =
+        serde_json::from_slice(&assert.get_output().stdout).expect("JSON");
+    assert_eq!(stats["width"], 16);
+}
+
+/// A full disk is called one, and takes nothing away.
+#[test]
+fn a_full_disk_is_said_and_loses_nothing() {
+    let directory = with_scene();
+    let path = directory.path();
+    for name in ["out.exr", "out.png"] {
+        symlink("/dev/full", path.join(name)).expect("a symlink");
+        spherule(path)
+            .args(RENDER)
+            .arg(name)
+            .assert()
+            .code(1)
+            .stderr(contains("No space left on device").and(contains("another size").not()));
+    }
+    spherule(path)
+        .args(RENDER)
+        .args(["fine.png", "--stats", "/dev/full"])
+        .assert()
+        .code(1)
+        .stderr(contains(
+            "/dev/full: cannot be written: No space left on device",
+        ));
+
+    let room = path.join("room");
+    fs::create_dir(&room).expect("a directory");
+    let mounted = "mount -t tmpfs -o size=64k tmpfs room && echo old > room/out.exr && \
+         echo old > room/out.png && echo old > room/s.json";
+    let name_space = |script: String| {
+        let mut command = Command::new("unshare");
+        command.current_dir(path).args(["-m", "sh", "-c", &script]);
+        command
+    };
+    if name_space(mounted.into()).ok().is_err() {
+        eprintln!("skipped the disk in a_full_disk_is_said_and_loses_nothing: no right to mount");
+        return;
+    }
+    let spherule = cargo_bin("spherule");
+    let spherule = spherule.display();
+    // Unlike light, normals are hard to compress.
+    for name in ["out.exr", "out.png"] {
+        let script = format!(
+            "{mounted} && {spherule} render scene.toml --device cpu --size 400x300 --shade normals -o room/{name}; \
+             echo $?; ls -A room; cat room/{name}"
+        );
+        name_space(script)
+            .assert()
+            .success()
+            .stdout("1\nout.exr\nout.png\ns.json\nold\n")
+            .stderr(contains("No space left on device").and(contains("MiB or less")));
+    }
+    // No room for a byte.
+    let script = format!(
+        "{mounted} && head -c 60k /dev/zero > room/fill; {spherule} render scene.toml --device cpu -o fine.png \
+         --stats room/s.json; echo $?; ls -A room; cat room/s.json"
+    );
+    name_space(script)
+        .assert()
+        .success()
+        .stdout("1\nfill\nout.exr\nout.png\ns.json\nold\n")
+        .stderr(contains("No space left on device"));
+}
+
+/// Starts a render into an image that takes a while to write, and returns while it is written.
+fn writing(directory: &Path, output: &str) -> Child {
+    let before = names(directory);
+    let child = std::process::Command::new(cargo_bin("spherule"))
+        .current_dir(directory)
+        .args(["render", "scene.toml", "--device", "cpu"])
+        .args([
+            "--precision",
+            "robust",
+            "--size",
+            "6000x4000",
+            "-q",
+            "-o",
+            output,
+        ])
+        .spawn()
+        .expect("it starts");
+    wait_for(|| {
+        let names = names(directory);
+        let new = |name: &&String| name.ends_with(".part") && !before.contains(name);
+        let part = names.iter().find(new);
+        let about = part.and_then(|name| fs::metadata(directory.join(name)).ok());
+        about.is_some_and(|about| about.len() > 0)
+    });
+    child
+}
+
+fn wait_for(condition: impl Fn() -> bool) {
+    let started = Instant::now();
+    while !condition() {
+        assert!(
+            started.elapsed() < Duration::from_secs(120),
+            "it never came"
+        );
+        std::thread::sleep(Duration::from_millis(1));
+    }
+}
+
+/// What a killed run leaves is removed by the next, what a live one has is not.
+#[test]
+fn the_next_run_removes_what_a_killed_one_left() {
+    let directory = with_scene();
+    let path = directory.path();
+    let mut killed = writing(path, "killed.exr");
+    killed.kill().expect("SIGKILL");
+    killed.wait().expect("it ends");
+    assert_eq!(names(path).len(), 2, "a temporary file is left");
+    let mut live = writing(path, "live.exr");
+    assert_eq!(names(path).len(), 2, "of the live one only");
+    spherule(path)
+        .args(RENDER)
+        .arg("out.png")
+        .assert()
+        .success();
+    assert!(live.wait().expect("it ends").success());
+    assert_eq!(names(path), ["live.exr", "out.png", "scene.toml"]);
+}
