@@ -4,7 +4,7 @@
 use std::fs;
 use std::os::unix::fs::{FileTypeExt, MetadataExt, PermissionsExt, symlink};
 use std::path::{Path, PathBuf};
-use std::process::Child;
+use std::process::{Child, Stdio};
 use std::time::{Duration, Instant};
 
 use assert_cmd::Command;
@@ -371,6 +371,27 @@ fn a_full_disk_is_said_and_loses_nothing() {
         .stderr(contains("No space left on device"));
 }
 
+/// `ulimit -f`: an error, not the signal that it sends.
+#[test]
+fn a_limit_on_files_is_an_error() {
+    let directory = with_scene();
+    let path = directory.path();
+    fs::write(path.join("out.exr"), "old").expect("a file");
+    let spherule = cargo_bin("spherule");
+    let script = format!(
+        "ulimit -f 1; exec {} render scene.toml --device cpu --size 400x300 -o out.exr",
+        spherule.display()
+    );
+    Command::new("sh")
+        .current_dir(path)
+        .args(["-c", &script])
+        .assert()
+        .code(1)
+        .stderr(contains("File too large"));
+    assert_eq!(names(path), ["out.exr", "scene.toml"]);
+    assert_eq!(fs::read(path.join("out.exr")).expect("a file"), b"old");
+}
+
 /// Starts a render into an image that takes a while to write, and returns while it is written.
 fn writing(directory: &Path, output: &str) -> Child {
     let before = names(directory);
@@ -407,6 +428,81 @@ fn wait_for(condition: impl Fn() -> bool) {
         );
         std::thread::sleep(Duration::from_millis(1));
     }
+}
+
+fn send(child: &Child, signal: &str) {
+    let sent = std::process::Command::new("kill")
+        .args(["-s", signal, &child.id().to_string()])
+        .status();
+    assert!(sent.expect("kill").success());
+}
+
+const SIGNALS: [(&str, i32); 3] = [("INT", 130), ("TERM", 143), ("HUP", 129)];
+
+/// The first signal lets the image be written, the second does not; neither leaves anything behind.
+#[test]
+fn signals_leave_nothing_behind() {
+    for (signal, code) in SIGNALS {
+        let directory = with_scene();
+        let path = directory.path();
+        fs::write(path.join("out.exr"), "old").expect("a file");
+        let mut child = writing(path, "out.exr");
+        send(&child, signal);
+        assert_eq!(child.wait().expect("it ends").code(), Some(code));
+        assert_eq!(names(path), ["out.exr", "scene.toml"]);
+        let image = image::open(path.join("out.exr")).expect("an image");
+        assert_eq!(image.width(), 6000);
+
+        fs::write(path.join("out.exr"), "old").expect("a file");
+        let mut child = writing(path, "out.exr");
+        send(&child, signal);
+        // Signals of one kind that nobody has seen yet are one signal.
+        std::thread::sleep(Duration::from_millis(50));
+        send(&child, signal);
+        assert_eq!(child.wait().expect("it ends").code(), Some(code));
+        assert_eq!(names(path), ["out.exr", "scene.toml"]);
+        assert_eq!(fs::read(path.join("out.exr")).expect("a file"), b"old");
+    }
+}
+
+/// What does not look for signals ends at the first.
+#[test]
+fn a_signal_ends_a_measurement() {
+    let directory = temporary();
+    for (signal, code) in SIGNALS {
+        let mut child = std::process::Command::new(cargo_bin("spherule"))
+            .current_dir(directory.path())
+            .args(["accuracy", "--device", "cpu", "--rays", "100000000"])
+            .stderr(Stdio::piped())
+            .spawn()
+            .expect("it starts");
+        // It has said that it measures.
+        let mut first = [0];
+        let stderr = child.stderr.as_mut().expect("its errors");
+        std::io::Read::read_exact(stderr, &mut first).expect("a note");
+        let sent = Instant::now();
+        send(&child, signal);
+        assert_eq!(child.wait().expect("it ends").code(), Some(code));
+        assert!(sent.elapsed() < Duration::from_secs(20));
+    }
+}
+
+/// What `nohup` ignores stays ignored.
+#[test]
+fn an_ignored_signal_stays_ignored() {
+    let directory = with_scene();
+    let path = directory.path();
+    let spherule = cargo_bin("spherule");
+    let script = format!(
+        "trap '' HUP; {} render scene.toml --device cpu --size 4000x3000 -o out.png & kill -s HUP $!; wait $!",
+        spherule.display()
+    );
+    Command::new("sh")
+        .current_dir(path)
+        .args(["-c", &script])
+        .assert()
+        .success();
+    assert!(path.join("out.png").exists());
 }
 
 /// What a killed run leaves is removed by the next, what a live one has is not.

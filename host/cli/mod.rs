@@ -8,6 +8,7 @@ mod bench;
 mod check;
 mod devices;
 mod explain;
+mod interrupt;
 mod precision;
 mod progress;
 mod render;
@@ -34,8 +35,9 @@ use crate::write::Output;
 
 /// Runs the command line of this process; its exit code is for `main` to return.
 ///
-/// Where a panic would be reported, and where log records go if they go nowhere yet, is set for the
-/// whole process. Nothing else of it is changed, so that other threads may go on meanwhile.
+/// Where a panic would be reported, what signals that end the process do first, and where log records
+/// go if they go nowhere yet, is set for the whole process. Nothing else of it is changed, so that
+/// other threads may go on meanwhile.
 #[must_use]
 pub fn main() -> ExitCode {
     run(std::env::args_os())
@@ -50,6 +52,7 @@ pub fn main() -> ExitCode {
 #[must_use]
 pub fn run(arguments: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> ExitCode {
     set_panic_hook();
+    interrupt::install();
     start_log();
     let arguments = match Arguments::try_parse_from(arguments) {
         Ok(arguments) => arguments,

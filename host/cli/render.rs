@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 use serde::Serialize;
 
 use super::args::RenderArguments;
+use super::interrupt::{self, Graceful};
 use super::precision::choose_rung;
 use super::progress::Bar;
 use super::{note, write_json};
@@ -166,7 +167,10 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<ExitCode> {
     );
     let image = &rendered.image;
     let encoding = Instant::now();
+    // What is rendered is written before a signal ends the command.
+    let graceful = Graceful::new();
     image.save_to(&output, room)?;
+    drop(graceful);
     let encode = encoding.elapsed();
     tracing::debug!(
         "encoded and wrote {}: {encode:.1?}",
@@ -214,6 +218,7 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<ExitCode> {
     ));
 
     let check = other
+        .filter(|_| interrupt::requested().is_none())
         .map(|other| check(arguments, &scene, settings, &other, &rendered))
         .transpose()?;
     let passed = check.as_ref().is_none_or(|check| check.passed);
@@ -256,6 +261,9 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<ExitCode> {
                 check,
             },
         )?;
+    }
+    if let Some(code) = interrupt::exit_code() {
+        return Ok(code);
     }
     Ok(if passed {
         ExitCode::SUCCESS

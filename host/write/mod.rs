@@ -21,6 +21,7 @@ use std::path::Path;
 
 pub use image::{Format, Room};
 pub use output::Output;
+pub(crate) use temporary::remove_all as remove_unfinished;
 
 /// The directory that a file of this name is in.
 fn directory_of(path: &Path) -> &Path {

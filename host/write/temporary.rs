@@ -88,6 +88,17 @@ impl Drop for Temporary {
     }
 }
 
+/// Removes every temporary file of this process. No other is made, and none is renamed, until the guard is dropped:
+/// a process that is about to end keeps it.
+#[must_use]
+pub(crate) fn remove_all() -> impl Sized {
+    let mut live = live();
+    for path in live.drain(..) {
+        let _ = fs::remove_file(path);
+    }
+    live
+}
+
 /// Removes from `directory` what runs of the user that owns `own` left when they were killed.
 pub(super) fn remove_dead(directory: &Path, own: &mut Temporary) {
     let Some(own) = own.file().ok().and_then(|file| file.metadata().ok()) else {
