@@ -213,7 +213,7 @@ fn wrong_input_is_refused_with_its_place() {
                 b"[[sphere]]\ncenter = [0, 0, 0]\nradius = -1\n",
             ),
             "radius.toml:3:10",
-            "radius of -1",
+            "radius = -1",
         ),
         (write("empty.toml", b""), "empty.toml", "no spheres"),
         (write("not-utf8.toml", b"[image]\n\xff"), "byte 8", "UTF-8"),

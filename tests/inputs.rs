@@ -59,14 +59,15 @@ fn nothing_of_a_name_is_obeyed_by_a_terminal() {
             let said = String::from_utf8(said).expect("UTF-8");
             let is_obeyed = |c: char| c.is_control() && c != '\n' || c == '\u{202e}';
             assert!(!said.contains(is_obeyed), "{said:?}");
-            assert!(said.contains("\\u{1b}"), "{said:?}");
+            said
         };
-        explain(&mut render(&scene, &output));
-        explain(
+        let _ = explain(&mut render(&scene, &output));
+        let said = explain(
             spherule()
                 .args(["explain", "--device", "cpu", "--no-costs"])
                 .arg(&scene),
         );
+        assert!(said.contains("\\u{1b}"), "{said:?}");
     }
 }
 

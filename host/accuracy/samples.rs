@@ -1,6 +1,6 @@
 //! What accuracy costs in time, for sampling: the error of an image as its samples grow.
 
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use serde::Serialize;
 use spherule_kernel::Rung;
@@ -63,7 +63,8 @@ pub struct Measured {
 
 /// Renders `scene` on `device` on each of `rungs` with 1, 2, 4, … up to `most` samples. The reference
 /// is of another seed, on the highest of the rungs, with sixteen times as many. All have fewer where they would not be done
-/// at `until`.
+/// at `until`; only the first step is certain to be measured. `compiling` is what it took to compile a pipeline before, if
+/// one was.
 ///
 /// # Errors
 ///
@@ -73,6 +74,7 @@ pub fn measure(
     rungs: &[Rung],
     scene: &Scene,
     most: u32,
+    compiling: Duration,
     until: Option<Instant>,
     progress: Progress<'_>,
 ) -> Result<Measured> {
@@ -92,7 +94,9 @@ pub fn measure(
     let rendered = render(&scene, settings, device, &|part| {
         progress(part * f64::from(wanted) / all);
     })?;
-    let (reference, took) = (rendered.image, started.elapsed());
+    let took = started.elapsed();
+    let compiling = compiling.max(rendered.timings.compile);
+    let reference = rendered.image;
     let reached = rendered.reached.map_or(1, |reached| reached.samples).max(1);
     done += f64::from(wanted);
     scene.sampling.seed = scene.sampling.seed.wrapping_sub(0x5eed);
@@ -105,12 +109,12 @@ pub fn measure(
             ..Settings::default()
         };
         let mut samples = 1;
-        // By the reference, and from then on by the step before.
-        let mut expected = took / reached;
+        // By the reference, whose pipeline another rung's is like, and from then on by the step before.
+        let mut expected = compiling + took / reached;
         while samples <= most {
             let is_late = left().is_some_and(|left| left < expected);
             let is_near = reached < wanted && reached / samples < LEAST_REFERENCE;
-            if (is_late || is_near) && samples > 1 {
+            if (is_late || is_near) && !steps.is_empty() {
                 is_cut = true;
                 break;
             }

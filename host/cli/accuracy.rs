@@ -145,10 +145,10 @@ pub(super) fn run(arguments: &AccuracyArguments) -> Result<ExitCode> {
             let rungs: Vec<Rung> = ends.into_iter().filter(|r| rungs.contains(r)).collect();
             let whole = [scene.width, scene.height];
             // The limit is for all of the command. A size that was asked for is measured whole.
-            let mut until = None;
+            let (mut until, mut compiling) = (None, Duration::ZERO);
             if arguments.size.is_none() {
                 let until = *until.insert(started + Duration::from_secs_f64(arguments.time_limit));
-                fit_samples(&mut scene, &device, &rungs, until)?;
+                compiling = fit_samples(&mut scene, &device, &rungs, until)?;
             }
             if whole != [scene.width, scene.height] {
                 note(&format!(
@@ -157,8 +157,15 @@ pub(super) fn run(arguments: &AccuracyArguments) -> Result<ExitCode> {
                 ));
             }
             image = Some([scene.width, scene.height]);
-            let measured =
-                samples::measure(&device, &rungs, &scene, MOST_SAMPLES, until, &progress)?;
+            let measured = samples::measure(
+                &device,
+                &rungs,
+                &scene,
+                MOST_SAMPLES,
+                compiling,
+                until,
+                &progress,
+            )?;
             is_cut = measured.is_cut;
             reference_samples = Some(measured.reference);
             steps = measured.steps;
@@ -248,9 +255,17 @@ fn measure(
     })
 }
 
-/// Makes the image of `scene` smaller where what `--samples` renders of it would not be done at `until`.
-fn fit_samples(scene: &mut Scene, device: &Device, rungs: &[Rung], until: Instant) -> Result<()> {
-    let samples = scene.sampling.samples.replace(1);
+/// Makes the image of `scene` smaller where what `--samples` renders of it would not be done at `until`; says what it took
+/// to compile the pipeline.
+fn fit_samples(
+    scene: &mut Scene,
+    device: &Device,
+    rungs: &[Rung],
+    until: Instant,
+) -> Result<Duration> {
+    // Of two, so that the pipeline is that of the images to come: one sample alone is no antialiasing.
+    const SAMPLES: u32 = 2;
+    let samples = scene.sampling.samples.replace(SAMPLES);
     let in_all = samples::in_all(rungs.len(), MOST_SAMPLES);
     // The reference takes most of the time, on the highest of the rungs.
     let settings = Settings {
@@ -258,13 +273,16 @@ fn fit_samples(scene: &mut Scene, device: &Device, rungs: &[Rung], until: Instan
         ..Settings::default()
     };
     let left = until.saturating_duration_since(Instant::now());
-    fit(scene, left.mul_f64(SHARE / in_all as f64), |scene| {
+    let frame = left.mul_f64(SHARE * f64::from(SAMPLES) / in_all as f64);
+    let mut compiling = Duration::ZERO;
+    fit(scene, frame, |scene| {
         let started = Instant::now();
         let compile = render(scene, settings, device, QUIET)?.timings.compile;
+        compiling = compiling.max(compile);
         Ok(started.elapsed().saturating_sub(compile))
     })?;
     scene.sampling.samples = samples;
-    Ok(())
+    Ok(compiling)
 }
 
 fn steps_table(report: &Report) -> String {

@@ -158,10 +158,12 @@ fn log_filter(wish: &str, quiet: &Targets) -> Result<Targets, String> {
     let mut filter = quiet.clone();
     for part in wish.split(',').map(str::trim).filter(|p| !p.is_empty()) {
         let (target, level) = part.split_once('=').unwrap_or(("spherule", part));
-        let level: LevelFilter = level
-            .trim()
-            .parse()
-            .map_err(|_| format!("`{}` is no level", level.trim().escape_default()))?;
+        let no_level = || format!("`{}` is no level", level.trim().escape_default());
+        // What is empty would be taken for "error".
+        if level.trim().is_empty() {
+            return Err(no_level());
+        }
+        let level: LevelFilter = level.trim().parse().map_err(|_| no_level())?;
         filter = filter.with_target(target.trim(), level);
     }
     Ok(filter)
