@@ -77,6 +77,15 @@ pub enum Error {
         during: String,
     },
 
+    /// The host has no memory left, or may not use more.
+    #[error("out of memory: {purpose} takes {}, more than this process gets", bytes(*needed))]
+    OutOfHostMemory {
+        /// All that was asked for, in bytes.
+        needed: u64,
+        /// What it is for.
+        purpose: String,
+    },
+
     /// A launch asks for more threads, workgroups or workgroup memory than the device has.
     #[error(
         "the launch of {kernel} does not fit {device}: {what} is {asked}, and the limit is {limit}"
@@ -204,6 +213,8 @@ impl Error {
             Self::KernelInvalid { .. } => {
                 "update the graphics driver; if you changed the kernel, check it with spirv-val".into()
             }
+            Self::OutOfMemory { device, .. } if device == "the host" => HOST_MEMORY_HELP.into(),
+            Self::OutOfHostMemory { .. } => HOST_MEMORY_HELP.into(),
             Self::BufferTooLarge { .. } | Self::OutOfMemory { .. } => {
                 "render fewer spheres or a smaller image, or use `--device cpu`, which uses the host's memory".into()
             }
@@ -256,6 +267,26 @@ pub(crate) fn nearest<'a>(text: &str, names: impl IntoIterator<Item = &'a str>) 
         .filter(|(likeness, _)| *likeness > 0.75)
         .max_by(|a, b| a.0.total_cmp(&b.0))
         .map(|(_, name)| name)
+}
+
+/// What to do where the host's memory is not enough: another device takes as much of it.
+const HOST_MEMORY_HELP: &str = "render a smaller image or fewer spheres, or give the process more memory (`ulimit -v` shows its limit)";
+
+/// So many bytes, for a person and exactly.
+fn bytes(count: u64) -> String {
+    let mut value = count as f64;
+    let mut unit = "";
+    for larger in ["KiB", "MiB", "GiB", "TiB", "PiB", "EiB"] {
+        if value < 1024.0 {
+            break;
+        }
+        (value, unit) = (value / 1024.0, larger);
+    }
+    if unit.is_empty() {
+        format!("{count} bytes")
+    } else {
+        format!("{value:.1} {unit} ({count} bytes)")
+    }
 }
 
 /// What is wrong with a scene, and where.

@@ -17,6 +17,7 @@
 //! | [`film`] | images: encoding, comparison |
 //! | [`mod@write`] | outputs: checked before the work, written whole or not at all |
 //! | [`error`] | [`Error`]: what can go wrong, and how to mend it |
+//! | `memory` | memory of the host that may not be there |
 //! | [`kernel_module`] | the kernel's SPIR-V that this build embeds |
 //! | `plural` | counts with their nouns |
 //! | `shown` | texts of unknown origin, as a terminal may show them |

@@ -1,7 +1,54 @@
-//! Whether what a measurement needs is there, asked before it begins: a system that is out of memory ends the program
-//! without a word.
+//! Memory of the host that may not be there.
+//!
+//! What grows with a scene or an image is asked for here, and an [`Error::OutOfHostMemory`] says what it was for. What a measurement needs is
+//! compared with what there is before it begins: a system that is out of memory ends the program without a word.
+
+use bytemuck::Zeroable;
 
 use crate::error::{Error, Result};
+
+/// The error that says so.
+fn failed(needed: u64, purpose: &str) -> Error {
+    Error::OutOfHostMemory {
+        needed,
+        purpose: purpose.into(),
+    }
+}
+
+/// So many elements, all of them zero. The system gives the memory when it is first written, and so to the
+/// threads that write it.
+///
+/// # Errors
+///
+/// [`Error::OutOfHostMemory`] if the host has not that much.
+pub(crate) fn zeroed<T: Zeroable>(count: u64, purpose: &str) -> Result<Vec<T>> {
+    let failed = || failed(count.saturating_mul(size_of::<T>() as u64), purpose);
+    let count = usize::try_from(count).map_err(|_| failed())?;
+    let elements = bytemuck::allocation::try_zeroed_slice_box(count).map_err(|()| failed())?;
+    Ok(elements.into_vec())
+}
+
+/// An empty vector with room for so many elements.
+///
+/// # Errors
+///
+/// [`Error::OutOfHostMemory`] if the host has not that much.
+pub(crate) fn room<T>(count: u64, purpose: &str) -> Result<Vec<T>> {
+    let failed = || failed(count.saturating_mul(size_of::<T>() as u64), purpose);
+    let mut elements = Vec::new();
+    let room = usize::try_from(count).map_err(|_| failed())?;
+    elements.try_reserve_exact(room).map_err(|_| failed())?;
+    Ok(elements)
+}
+
+/// Asks for so many bytes and gives them back: what takes them next, and cannot fail, will have them.
+///
+/// # Errors
+///
+/// [`Error::OutOfHostMemory`] if the host has not that much.
+pub(crate) fn check(bytes: u64, purpose: &str) -> Result<()> {
+    room::<u8>(bytes, purpose).map(drop)
+}
 
 /// Refuses what needs more bytes than the system has to give. Where it does not say what it has, nothing is refused.
 ///

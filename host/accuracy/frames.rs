@@ -71,7 +71,7 @@ pub fn measure(
                 times[index].push(rendered.timings.trace.as_secs_f64() * 1e3);
             }
             let done = round * rungs.len() + index + 1;
-            progress(done as f64 / ((1 + ROUNDS) * rungs.len()) as f64);
+            let _ = progress(done as f64 / ((1 + ROUNDS) * rungs.len()) as f64);
         }
     }
     Ok(rungs

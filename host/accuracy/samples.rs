@@ -92,7 +92,7 @@ pub fn measure(
     };
     let started = Instant::now();
     let rendered = render(&scene, settings, device, &|part| {
-        progress(part * f64::from(wanted) / all);
+        progress(part * f64::from(wanted) / all)
     })?;
     let took = started.elapsed();
     let compiling = compiling.max(rendered.timings.compile);
@@ -122,7 +122,7 @@ pub fn measure(
             let started = Instant::now();
             let before = done;
             let rendered = render(&scene, settings, device, &|part| {
-                progress((before + part * f64::from(samples)) / all);
+                progress((before + part * f64::from(samples)) / all)
             })?;
             let compile = rendered.timings.compile;
             expected = 2 * started.elapsed().saturating_sub(compile);

@@ -1,6 +1,7 @@
 //! `spherule accuracy`: what each rung gets right on each family of rays, and what it costs.
 
 use std::fmt::Write;
+use std::ops::ControlFlow;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
@@ -136,7 +137,10 @@ pub(super) fn run(arguments: &AccuracyArguments) -> Result<ExitCode> {
     let mut image = None;
     let mut reference_samples = None;
     let bar = Bar::new("measuring", false);
-    let progress = |done| bar.set(done);
+    let progress = |done| {
+        bar.set(done);
+        ControlFlow::Continue(())
+    };
     let mut is_cut = false;
     match (scene, &arguments.scene) {
         (Some(mut scene), _) if arguments.samples.is_some() => {
@@ -172,7 +176,7 @@ pub(super) fn run(arguments: &AccuracyArguments) -> Result<ExitCode> {
         }
         (Some(scene), Some(Subject::Scene(path))) => {
             let samples = scene_rays::sample(&scene, SEED, arguments.rays as usize)?;
-            families.push(measure(&device, &rungs, "scene", &samples, &|_| {})?);
+            families.push(measure(&device, &rungs, "scene", &samples, QUIET)?);
             frames = Some(FramesReport {
                 scene: shown_path(path),
                 spheres: scene.world.spheres.len(),
@@ -239,7 +243,7 @@ fn measure(
     let prices = price::measure(device, rungs, samples)?;
     let mut reports = Vec::new();
     for (rung, price) in rungs.iter().zip(prices) {
-        progress((1 + reports.len()) as f64 / (1 + rungs.len()) as f64);
+        let _ = progress((1 + reports.len()) as f64 / (1 + rungs.len()) as f64);
         let answers = intersect_all(device, *rung, samples)?;
         reports.push(RungReport {
             rung: rung.name(),

@@ -1,6 +1,7 @@
 //! `spherule explain`: which effects a scene calls for, by what, and what each costs here.
 
 use std::fmt::Write;
+use std::ops::ControlFlow;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
@@ -142,7 +143,10 @@ fn report(
             })?;
         }
         let bar = Bar::new("measuring", false);
-        let progress = |done| bar.set(done);
+        let progress = |done| {
+            bar.set(done);
+            ControlFlow::Continue(())
+        };
         cost::measure(
             &scene, settings, device, &choices, compiling, until, &progress,
         )?

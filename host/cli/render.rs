@@ -1,5 +1,6 @@
 //! `spherule render`: from a file to an image.
 
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
@@ -33,6 +34,8 @@ struct Stats {
     width: u32,
     height: u32,
     rays: u64,
+    /// Pixels that a ray was traced for: all, unless the render was stopped early.
+    traced_pixels: u64,
     /// The effects that the image shows.
     effects: Vec<&'static str>,
     /// Samples taken, the noise that was reached, and what ended the render.
@@ -141,12 +144,10 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<ExitCode> {
         noise: arguments.noise,
     };
 
-    let room = Room::reserve(
-        Format::of(output.path())?,
-        scene.width,
-        scene.height,
-        scene.transparent,
-    )?;
+    // An image that a signal cuts has opacities.
+    let room = Room::reserve(Format::of(output.path())?, scene.width, scene.height, true)?;
+    // From here on the first signal ends the tracing, and the picture is kept.
+    let graceful = Graceful::new();
     let rendered = match with_bar(arguments, &scene, settings, &device) {
         Err(error @ Error::RungRefused { .. })
             if arguments.device == DeviceChoice::Auto && !arguments.check =>
@@ -165,12 +166,16 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<ExitCode> {
         timings.trace,
         timings.readback
     );
+    if rendered.traced == 0
+        && let Some(code) = interrupt::exit_code()
+    {
+        note("interrupted before the first pixel was done: nothing is written");
+        return Ok(code);
+    }
     let image = &rendered.image;
     let encoding = Instant::now();
     // What is rendered is written before a signal ends the command.
-    let graceful = Graceful::new();
     image.save_to(&output, room)?;
-    drop(graceful);
     let encode = encoding.elapsed();
     tracing::debug!(
         "encoded and wrote {}: {encode:.1?}",
@@ -192,35 +197,31 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<ExitCode> {
             "nothing in this image is sampled: --samples, --seed, --time-limit and --noise have no effect",
         );
     }
-    let samples = match rendered.reached {
-        None => String::new(),
-        Some(reached) if reached.noise.is_infinite() => {
-            format!(", {} a pixel", count_of(reached.samples as usize, "sample"))
-        }
-        Some(reached) => format!(
-            ", {} a pixel{}, noise {:.2} %",
-            count_of(reached.samples as usize, "sample"),
-            match reached.stopped_by {
-                StoppedBy::Samples => "",
-                StoppedBy::TimeLimit => " (the time was up)",
-                StoppedBy::Noise => " (the noise was low enough)",
-            },
-            100.0 * reached.noise,
-        ),
-    };
-    say(&format!(
-        "wrote {}: {} × {} pixels{samples}, {}, {}",
+    let extent = extent(&rendered);
+    let is_interrupted = interrupt::requested().is_some() && !rendered.is_complete();
+    let wrote = format!(
+        "wrote {}: {} × {} pixels{}{extent}, {}, {}",
         shown_path(output.path()),
         image.width(),
         image.height(),
+        if extent.is_empty() { "" } else { ", " },
         count_of(scene.world.spheres.len(), "sphere"),
         human(total),
-    ));
+    );
+    if is_interrupted {
+        note(&format!(
+            "interrupted: wrote {} with {extent}",
+            shown_path(output.path())
+        ));
+    } else {
+        say(&wrote);
+    }
 
     let check = other
         .filter(|_| interrupt::requested().is_none())
         .map(|other| check(arguments, &scene, settings, &other, &rendered))
-        .transpose()?;
+        .transpose()?
+        .flatten();
     let passed = check.as_ref().is_none_or(|check| check.passed);
     if let Some(output) = stats {
         // Camera rays; light paths go on from there.
@@ -237,6 +238,7 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<ExitCode> {
                 width: scene.width,
                 height: scene.height,
                 rays,
+                traced_pixels: rendered.traced,
                 effects: scene
                     .called_effects()
                     .iter()
@@ -262,6 +264,7 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<ExitCode> {
             },
         )?;
     }
+    drop(graceful);
     if let Some(code) = interrupt::exit_code() {
         return Ok(code);
     }
@@ -286,18 +289,62 @@ fn with_bar(
     device: &Device,
 ) -> Result<Rendered> {
     let bar = Bar::new("rendering", arguments.quiet);
-    render(scene, settings, device, &|done| bar.set(done))
+    render(scene, settings, device, &|done| {
+        bar.set(done);
+        match interrupt::requested() {
+            Some(_) => ControlFlow::Break(()),
+            None => ControlFlow::Continue(()),
+        }
+    })
 }
 
-/// Renders on the other path and compares.
+/// How far the render came, in samples a pixel or in pixels; nothing if there is nothing to say.
+fn extent(rendered: &Rendered) -> String {
+    let pixels = u64::from(rendered.image.width()) * u64::from(rendered.image.height());
+    if rendered.traced < pixels {
+        // Never all of them.
+        let percent = (100.0 * rendered.traced as f64 / pixels as f64).floor();
+        let rest = match rendered.reached {
+            Some(reached) if reached.stopped_by == StoppedBy::TimeLimit => {
+                " (the time was up: the others show a coarse preview)"
+            }
+            _ => "",
+        };
+        return format!("{percent} % of the pixels{rest}");
+    }
+    let Some(reached) = rendered.reached else {
+        return String::new();
+    };
+    let by = match reached.stopped_by {
+        StoppedBy::Samples => String::new(),
+        StoppedBy::TimeLimit => " (the time was up)".into(),
+        StoppedBy::Noise => " (the noise was low enough)".into(),
+        StoppedBy::Interrupted => {
+            return format!("{} of {} samples a pixel", reached.samples, reached.asked);
+        }
+    };
+    let noise = if reached.noise.is_infinite() {
+        String::new()
+    } else {
+        format!(", noise {:.2} %", 100.0 * reached.noise)
+    };
+    let samples = count_of(reached.samples as usize, "sample");
+    format!("{samples} a pixel{by}{noise}")
+}
+
+/// Renders on the other path and compares; `None` if a signal came first.
 fn check(
     arguments: &RenderArguments,
     scene: &Scene,
     settings: Settings,
     other: &Device,
     rendered: &Rendered,
-) -> Result<Check> {
+) -> Result<Option<Check>> {
     let again = with_bar(arguments, scene, settings, other)?;
+    if !again.is_complete() {
+        note("interrupted: the check was not finished");
+        return Ok(None);
+    }
     let comparison = Comparison::of(&rendered.image, &again.image, Tolerance::default())
         .ok_or_else(|| Error::Image {
             path: PathBuf::new(),
@@ -323,11 +370,11 @@ fn check(
             comparison.tolerance.share * 100.0,
         ));
     }
-    Ok(Check {
+    Ok(Some(Check {
         against: other.name(),
         comparison,
         passed,
-    })
+    }))
 }
 
 /// The input's name with `.png`, in the current directory.

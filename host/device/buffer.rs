@@ -1,6 +1,8 @@
 //! [`Buffer`]: device memory that holds elements of one type.
 
 use std::marker::PhantomData;
+use std::num::NonZero;
+use std::ops::Range;
 
 use bytemuck::Pod;
 
@@ -40,6 +42,25 @@ impl<T: Pod> Buffer<T> {
     pub fn binding(&self) -> Binding<'_> {
         Binding {
             resource: self.raw.as_entire_binding(),
+        }
+    }
+
+    /// Some of its elements as a kernel's argument. The first must be as many bytes from the start as a multiple of the device's
+    /// `min_storage_buffer_offset_alignment`.
+    ///
+    /// # Panics
+    ///
+    /// If the range is empty or leaves the buffer.
+    #[must_use]
+    pub fn binding_of(&self, range: Range<usize>) -> Binding<'_> {
+        assert!(range.start < range.end && range.end <= self.len);
+        let bytes = |count: usize| (count * size_of::<T>()) as u64;
+        Binding {
+            resource: wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+                buffer: &self.raw,
+                offset: bytes(range.start),
+                size: NonZero::new(bytes(range.len())),
+            }),
         }
     }
 }

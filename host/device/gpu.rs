@@ -27,6 +27,7 @@ use super::errors::{Watch, one_line};
 use super::spirv::Module;
 use super::timer::Timer;
 use crate::error::{Error, Result};
+use crate::memory;
 use crate::shown::shown;
 
 /// How a device is opened; for tests and for odd drivers.
@@ -100,6 +101,9 @@ impl LaunchTime {
         self.device.unwrap_or(self.host)
     }
 }
+
+/// What one readback moves at most: it takes as much of the host's memory once more.
+const READBACK_BYTES: usize = 1 << 26;
 
 /// A GPU, or a software stand-in for one, ready to run kernels.
 #[derive(Debug)]
@@ -614,16 +618,33 @@ impl Gpu {
     /// As [`Gpu::read`].
     pub fn read_first<T: Pod>(&self, buffer: &Buffer<T>, len: usize) -> Result<Vec<T>> {
         let len = len.min(buffer.len());
-        if len == 0 {
-            return Ok(Vec::new());
+        let mut elements = memory::zeroed(len as u64, &buffer.label)?;
+        self.read_into(buffer, &mut elements)?;
+        Ok(elements)
+    }
+
+    /// Copies the first elements of `buffer` back to where the host wants them, and no more than it holds.
+    ///
+    /// # Errors
+    ///
+    /// As [`Gpu::read`].
+    pub fn read_into<T: Pod>(&self, buffer: &Buffer<T>, elements: &mut [T]) -> Result<()> {
+        let len = elements.len().min(buffer.len());
+        let bytes = bytemuck::cast_slice_mut::<T, u8>(&mut elements[..len]);
+        for (piece, bytes) in bytes.chunks_mut(READBACK_BYTES).enumerate() {
+            self.read_bytes(buffer, (piece * READBACK_BYTES) as u64, bytes)?;
         }
+        Ok(())
+    }
+
+    /// Copies bytes of `buffer` from `offset` on.
+    fn read_bytes<T: Pod>(&self, buffer: &Buffer<T>, offset: u64, bytes: &mut [u8]) -> Result<()> {
         let failed = |reason: String| Error::Readback {
             what: buffer.label.clone(),
             device: self.name.clone(),
             reason,
         };
-        let bytes = (len * size_of::<T>()) as u64;
-        let padded = bytes.next_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT);
+        let padded = (bytes.len() as u64).next_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT);
         let during = format!("reading {} back", buffer.label);
         let (submission, staging, mapped) = self.watch.checked(&self.device, &during, || {
             let staging = self.device.create_buffer(&wgpu::BufferDescriptor {
@@ -633,7 +654,7 @@ impl Gpu {
                 mapped_at_creation: false,
             });
             let mut encoder = self.encoder("readback");
-            encoder.copy_buffer_to_buffer(&buffer.raw, 0, &staging, 0, padded);
+            encoder.copy_buffer_to_buffer(&buffer.raw, offset, &staging, 0, padded);
             let submission = self.queue.submit([encoder.finish()]);
             let mapped = map(&staging);
             (submission, staging, mapped)
@@ -648,9 +669,8 @@ impl Gpu {
         let view = staging
             .get_mapped_range(..)
             .map_err(|error| failed(error.to_string()))?;
-        let mut elements = vec![T::zeroed(); len];
-        bytemuck::cast_slice_mut::<T, u8>(&mut elements).copy_from_slice(&view[..bytes as usize]);
-        Ok(elements)
+        bytes.copy_from_slice(&view[..bytes.len()]);
+        Ok(())
     }
 
     fn encoder(&self, label: &str) -> wgpu::CommandEncoder {

@@ -13,7 +13,8 @@ pub mod flip;
 use bytemuck::Zeroable;
 use spherule_kernel::{Pixel, Shading};
 
-use crate::error::{Error, Result};
+use crate::error::Result;
+use crate::memory;
 use crate::scene::Develop;
 
 /// A rendered image: linear colours or measurements, row by row from the upper left.
@@ -34,18 +35,12 @@ pub struct Image {
 ///
 /// # Errors
 ///
-/// [`Error::OutOfMemory`] if the host has not that much.
+/// [`Error::OutOfHostMemory`](crate::Error::OutOfHostMemory) if the host has not that much.
 pub fn allocate<T: Zeroable>(width: u32, height: u32) -> Result<Vec<T>> {
-    let failed = || Error::OutOfMemory {
-        device: "the host".into(),
-        during: format!(
-            "making room for {width} × {height} pixels, {:.1} GiB",
-            f64::from(width) * f64::from(height) * size_of::<T>() as f64 / f64::from(1 << 30)
-        ),
-    };
-    let count = usize::try_from(u64::from(width) * u64::from(height)).map_err(|_| failed())?;
-    let pixels = bytemuck::allocation::try_zeroed_slice_box(count).map_err(|()| failed())?;
-    Ok(pixels.into_vec())
+    memory::zeroed(
+        u64::from(width) * u64::from(height),
+        &format!("an image of {width} × {height} pixels"),
+    )
 }
 
 impl Image {

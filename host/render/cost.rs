@@ -69,7 +69,7 @@ pub fn measure(
                 ..settings
             };
             let timings = render(scene, settings, device, &|done| {
-                progress((before as f64 + done) / frames(choices.len()) as f64);
+                progress((before as f64 + done) / frames(choices.len()) as f64)
             })?
             .timings;
             if round == 0 {

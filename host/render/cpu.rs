@@ -1,6 +1,7 @@
 //! The CPU path: squares of camera rays, over bands of rows, and the kernel's functions for what they hit.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::{Duration, Instant};
 
 use std::borrow::Cow;
 
@@ -17,6 +18,10 @@ use crate::scene::tree::{self, Acceleration, Nodes};
 
 /// From how many spheres on a tree pays for squares of camera rays: 8 with AVX-512.
 const MIN_SPHERES: usize = 12;
+
+/// After so many squares at most it is asked whether the render goes on; after fewer where they take longer than this.
+const SQUARES: usize = 16;
+const PATIENCE: Duration = Duration::from_millis(5);
 
 /// A world, and the tree over it if one pays.
 #[derive(Clone, Debug)]
@@ -42,11 +47,12 @@ impl<'a> Prepared<'a> {
     }
 }
 
-/// Renders `launch`, which covers a whole image, on every thread of the pool.
+/// Renders `launch`, which covers a whole image, on every thread of the pool. Where `progress` breaks off, the pixels that
+/// were not reached are [not written](Pixel::is_written).
 ///
 /// # Errors
 ///
-/// [`OutOfMemory`](crate::Error::OutOfMemory) if the host has no room for the image.
+/// [`OutOfHostMemory`](crate::Error::OutOfHostMemory) if the host has no room for the image.
 pub fn render(
     launch: &Launch,
     world: &Prepared<'_>,
@@ -59,7 +65,8 @@ pub fn render(
     Ok(pixels)
 }
 
-/// [`render`] to where an image was before: `pixels`, row by row, of which there are as many as the launch has.
+/// [`render`] to where an image was before: `pixels`, row by row, of which there are as many as the launch has. Where
+/// `progress` breaks off, pixels that were not reached stay as they are.
 pub fn render_to(
     pixels: &mut [Pixel],
     launch: &Launch,
@@ -110,16 +117,36 @@ fn bands<const SHADING: u32, const RUNG: u32>(
     pixels: &mut [Pixel],
 ) {
     let width = launch.tile_size.x as usize;
-    let height = launch.tile_size.y as usize;
+    let all = pixels.len();
     let Prepared { world, nodes } = world;
-    let rows_done = AtomicUsize::new(0);
+    let done = AtomicUsize::new(0);
+    let goes_on = |more: usize| {
+        let done = done.fetch_add(more, Ordering::Relaxed) + more;
+        progress(done as f64 / all as f64).is_continue()
+    };
     let frusta = Frusta::of(launch);
     pixels
         .par_chunks_mut(width * SIDE)
         .enumerate()
         .for_each(|(band, pixels)| {
             let mut packet = Packet::new();
+            let rows = pixels.len() / width;
+            // One that takes long may be the first.
+            let (mut asked_at, mut next, mut squares) = (Instant::now(), 0, 1);
+            let mut since = 0;
             for left in (0..width).step_by(SIDE) {
+                if left >= next {
+                    if !goes_on((left - since) * rows) {
+                        return;
+                    }
+                    let now = Instant::now();
+                    squares = if now - asked_at > PATIENCE {
+                        1
+                    } else {
+                        (2 * squares).min(SQUARES)
+                    };
+                    (asked_at, since, next) = (now, left, left + squares * SIDE);
+                }
                 let corner = UVec2::new(left as u32, (band * SIDE) as u32);
                 packet::trace::<RUNG>(
                     &mut packet,
@@ -144,8 +171,6 @@ fn bands<const SHADING: u32, const RUNG: u32>(
                     }
                 }
             }
-            let rows = pixels.len() / width;
-            let done = rows_done.fetch_add(rows, Ordering::Relaxed) + rows;
-            progress(done as f64 / height as f64);
+            goes_on((width - since) * rows);
         });
 }

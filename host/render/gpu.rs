@@ -11,7 +11,7 @@ use spherule_kernel::{Launch, Material, Pixel, Shading, Sphere};
 
 use super::pace::Pace;
 use super::tiles::Tiles;
-use super::{Progress, Settings, Timings};
+use super::{Progress, QUIET, Settings, Timings};
 use crate::accuracy::canary::Canary;
 use crate::device::{Access, Buffer, Gpu, Kernel};
 use crate::error::{Error, Result};
@@ -175,7 +175,8 @@ impl Prepared {
     }
 }
 
-/// Renders `launch`, which covers a whole image, on `gpu`.
+/// Renders `launch`, which covers a whole image, on `gpu`. Where `progress` breaks off, the pixels that were not reached are
+/// [not written](Pixel::is_written).
 ///
 /// # Errors
 ///
@@ -204,15 +205,21 @@ pub fn render_paced(
     let size = launch.image_size;
     let mut image = film::allocate(size.x, size.y)?;
     let mut readback = Duration::ZERO;
-    let timings = each_tile(gpu, launch, world, pace, |target, start, count| {
-        let reading = Instant::now();
-        let pixels = gpu.read_first(target, count)?;
-        check_written(gpu, &pixels)?;
-        image[start..start + count].copy_from_slice(&pixels);
-        readback += reading.elapsed();
-        progress((start + count) as f64 / image.len() as f64);
-        Ok(())
-    })?;
+    let timings = each_tile(
+        gpu,
+        launch,
+        world,
+        pace,
+        progress,
+        |target, start, count| {
+            let reading = Instant::now();
+            let pixels = &mut image[start..start + count];
+            gpu.read_into(target, pixels)?;
+            check_written(gpu, pixels)?;
+            readback += reading.elapsed();
+            Ok(())
+        },
+    )?;
     Ok((
         image,
         Timings {
@@ -228,17 +235,18 @@ pub fn render_paced(
 ///
 /// As [`render`].
 pub fn time(gpu: &Gpu, launch: &Launch, world: &Prepared) -> Result<Duration> {
-    let all = world.paced(|pace| each_tile(gpu, launch, world, pace, |_, _, _| Ok(())))?;
+    let all = world.paced(|pace| each_tile(gpu, launch, world, pace, QUIET, |_, _, _| Ok(())))?;
     Ok(all.trace)
 }
 
-/// Renders a launch tile by tile. `finished` is told where a tile's pixels are, which of the image its
-/// first is, and how many there are.
+/// Renders a launch tile by tile, for as long as `progress` goes on. `finished` is told where a tile's pixels are, which of the
+/// image its first is, and how many there are.
 fn each_tile(
     gpu: &Gpu,
     launch: &Launch,
     world: &Prepared,
     pace: &mut Pace,
+    progress: Progress<'_>,
     mut finished: impl FnMut(&Buffer<Pixel>, usize, usize) -> Result<()>,
 ) -> Result<Timings> {
     let started = Instant::now();
@@ -260,9 +268,21 @@ fn each_tile(
             tile_size: tile,
             ..*launch
         };
-        timings.trace += render_tile(gpu, &launch, world, &target, pace)?;
         let count = tile.x as usize * tile.y as usize;
-        finished(&target.pixels, tiles.start(origin), count)?;
+        let (start, all) = (tiles.start(origin), size.x as usize * size.y as usize);
+        let goes_on = |share: f64| {
+            let done = (start as f64 + count as f64 * share) / all as f64;
+            progress(done).is_continue()
+        };
+        let (took, is_whole) = render_tile(gpu, &launch, world, &target, pace, goes_on)?;
+        timings.trace += took;
+        if !is_whole {
+            break;
+        }
+        finished(&target.pixels, start, count)?;
+        if progress((start + count) as f64 / all as f64).is_break() {
+            break;
+        }
         origin = tiles.next(origin, tile);
     }
     Ok(timings)
@@ -274,22 +294,30 @@ struct Target {
     pixels: Buffer<Pixel>,
 }
 
-/// Renders one tile against every part of the world.
+/// Renders one tile against every part of the world. Returns how long that took, and whether every sphere was tested: not where
+/// `goes_on`, which is asked between launches and told the share of the spheres that were, says no.
 fn render_tile(
     gpu: &Gpu,
     launch: &Launch,
     world: &Prepared,
     target: &Target,
     pace: &mut Pace,
-) -> Result<Duration> {
+    goes_on: impl Fn(f64) -> bool,
+) -> Result<(Duration, bool)> {
     gpu.clear(&target.pixels)?;
     let tile = launch.tile_size;
     let pixels = u64::from(tile.x) * u64::from(tile.y);
     let mut launch = *launch;
     let mut took = Duration::ZERO;
+    let all: usize = world.parts.iter().map(|part| part.spheres.len()).sum();
+    let mut before = 0;
     for part in &world.parts {
         launch.first_sphere = 0;
         loop {
+            let tested = before + launch.first_sphere as usize;
+            if !goes_on(tested as f64 / all.max(1) as f64) {
+                return Ok((took, false));
+            }
             let left = part.spheres.len() as u32 - launch.first_sphere;
             launch.sphere_count = world.search.spheres(pace.spheres(pixels), left);
             gpu.update(&target.launch, &launch)?;
@@ -316,8 +344,9 @@ fn render_tile(
                 break;
             }
         }
+        before += part.spheres.len();
     }
-    Ok(took)
+    Ok((took, true))
 }
 
 /// A kernel that panics on the device returns without a word; what it leaves behind is the zero

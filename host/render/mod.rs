@@ -22,16 +22,20 @@ pub mod packet;
 pub mod paths;
 mod tiles;
 
+use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use spherule_kernel::{Camera, Launch, Rung, Shading};
+use glam::Vec3;
+use spherule_kernel::{Camera, Hit, Launch, Pixel, Rung, Shading};
 
 use crate::device::Device;
 use crate::error::{Error, Result, SceneError};
 use crate::film::Image;
+use crate::memory;
 use crate::scene::Scene;
 use crate::scene::tree::Acceleration;
-use paths::{EffectChoice, Reached};
+use paths::{EffectChoice, Reached, StoppedBy};
 
 /// What is fixed before the kernel is compiled, on the GPU and on the CPU.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -44,7 +48,8 @@ pub struct Settings {
     pub acceleration: Acceleration,
     /// Which effects the pipeline holds; only [`Shading::Lit`] shows any.
     pub effects: EffectChoice,
-    /// Stops taking samples after this time of tracing.
+    /// Stops taking samples after this time of tracing, give or take a launch on a GPU. An image of one ray a pixel, which
+    /// takes no samples, is not stopped.
     pub time_limit: Option<Duration>,
     /// Stops taking samples when [`Reached::noise`](paths::Reached::noise) is as low as this.
     pub noise: Option<f64>,
@@ -69,21 +74,38 @@ impl From<(Shading, Rung)> for Settings {
     }
 }
 
-/// Told now and then how far a render is: a number from 0 to 1. May be called from any thread.
-pub type Progress<'a> = &'a (dyn Fn(f64) + Sync);
+/// Told how far a render is, a number from 0 to 1, and asked whether it goes on.
+///
+/// It is called from any thread, every few milliseconds of each on a CPU and after each launch on a GPU, and so must be quick. Where it
+/// breaks off, the render ends with what it has: see [`Rendered::is_complete`].
+pub type Progress<'a> = &'a (dyn Fn(f64) -> ControlFlow<()> + Sync);
 
-/// Ignores progress.
-pub const QUIET: Progress<'static> = &|_| {};
+/// Ignores progress, and always goes on.
+pub const QUIET: Progress<'static> = &|_| ControlFlow::Continue(());
 
 /// An image, and what it took.
 #[derive(Debug)]
 pub struct Rendered {
-    /// The image.
+    /// The image. Pixels that no ray was traced for are transparent, and black where nothing shows that;
+    /// where a time limit left them out, they show a coarse preview instead.
     pub image: Image,
+    /// How many pixels a ray was traced for: all, unless the render was stopped early.
+    pub traced: u64,
     /// What it took.
     pub timings: Timings,
     /// How far it came, where there is more than one ray a pixel.
     pub reached: Option<Reached>,
+}
+
+impl Rendered {
+    /// Whether each pixel was traced, and nothing broke off its samples: a time limit or a noise target that was reached
+    /// did not.
+    #[must_use]
+    pub fn is_complete(&self) -> bool {
+        let pixels = u64::from(self.image.width()) * u64::from(self.image.height());
+        let is_broken_off = |reached: Reached| reached.stopped_by == StoppedBy::Interrupted;
+        self.traced == pixels && !self.reached.is_some_and(is_broken_off)
+    }
 }
 
 /// Where the time of a render went.
@@ -122,17 +144,21 @@ pub fn render(
     progress: Progress<'_>,
 ) -> Result<Rendered> {
     let settings = settings.into();
+    // Whoever has once broken off is not asked again.
+    let is_over = AtomicBool::new(false);
+    let progress: Progress<'_> = &|done| {
+        if is_over.load(Ordering::Relaxed) || progress(done).is_break() {
+            is_over.store(true, Ordering::Relaxed);
+            return ControlFlow::Break(());
+        }
+        ControlFlow::Continue(())
+    };
     let shown = settings.effects.shown(scene.effects());
     if settings.shading == Shading::Lit && !shown.is_empty() {
         return paths::render(scene, &settings, device, progress);
     }
     let launch = whole_image(scene)?;
-    let image = |pixels| {
-        let mut image = Image::new(scene.width, scene.height, settings.shading, pixels);
-        image.develop = scene.develop;
-        image
-    };
-    match device {
+    let (mut pixels, timings) = match device {
         Device::Cpu => {
             let started = Instant::now();
             let world = cpu::Prepared::new(&scene.world, settings.acceleration);
@@ -143,11 +169,7 @@ pub fn render(
                 trace: started.elapsed() - setup,
                 ..Timings::default()
             };
-            Ok(Rendered {
-                image: image(pixels),
-                timings,
-                reached: None,
-            })
+            (pixels, timings)
         }
         Device::Gpu(gpu) => {
             let started = Instant::now();
@@ -158,13 +180,46 @@ pub fn render(
                 setup: setup + timings.setup,
                 ..timings
             };
-            Ok(Rendered {
-                image: image(pixels),
-                timings,
-                reached: None,
-            })
+            (pixels, timings)
+        }
+    };
+    let mut missing = Vec::new();
+    let mut traced = pixels.len() as u64;
+    if is_over.into_inner() {
+        traced = pixels.iter().filter(|pixel| pixel.is_written()).count() as u64;
+        missing = blank_the_rest(&mut pixels);
+    }
+    let mut image = Image::new(scene.width, scene.height, settings.shading, pixels);
+    image.develop = scene.develop;
+    if !missing.is_empty() {
+        image.set_alpha(missing);
+    }
+    Ok(Rendered {
+        image,
+        traced,
+        timings,
+        reached: None,
+    })
+}
+
+/// Makes pixels that no kernel has written black ones that show no sphere, and returns how opaque each pixel is; nothing if all are
+/// there, or if there is no memory for it.
+fn blank_the_rest(pixels: &mut [Pixel]) -> Vec<f32> {
+    if pixels.iter().all(Pixel::is_written) {
+        return Vec::new();
+    }
+    let mut alpha = memory::room(pixels.len() as u64, "the alpha channel").unwrap_or_default();
+    let has_room = alpha.capacity() > 0;
+    for pixel in pixels {
+        let is_there = pixel.is_written();
+        if !is_there {
+            *pixel = Pixel::new(Vec3::ZERO, Hit::NONE_T);
+        }
+        if has_room {
+            alpha.push(f32::from(u8::from(is_there)));
         }
     }
+    alpha
 }
 
 /// The launch that covers the whole image and every sphere; tiles and runs are cut out of it.

@@ -65,6 +65,12 @@ impl Pace {
         }
     }
 
+    /// How many pixels the next launch takes, of `work` intersections each.
+    #[must_use]
+    pub fn pixels(&self, work: u64) -> u64 {
+        self.intersections / work.max(1)
+    }
+
     /// How many spheres the next launch over `pixels` pixels tests.
     #[must_use]
     pub fn spheres(&self, pixels: u64) -> u32 {

@@ -20,13 +20,18 @@ pub enum StoppedBy {
     TimeLimit,
     /// The noise was low enough.
     Noise,
+    /// Whoever watches the progress broke it off.
+    Interrupted,
 }
 
 /// How far a render came.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Reached {
-    /// Samples of each pixel; of the least sampled tile, if time ran out.
+    /// The fewest samples that any pixel has. Where time ran out or the render was broken off, others may have more; each
+    /// pixel is the mean of its own.
     pub samples: u32,
+    /// How many were asked for.
+    pub asked: u32,
     /// The standard error of the pixels' luminance, root mean square over the image, over the mean
     /// luminance of the image. An upper estimate: it takes the stratified samples for independent.
     /// Infinite where it is not known: for a single sample, or light beyond what floats square.
@@ -94,19 +99,22 @@ impl Budget {
                 return Ok(Some(StoppedBy::Noise));
             }
         }
-        Ok(self
-            .deadline
-            .filter(|deadline| Instant::now() >= *deadline)
-            .map(|_| StoppedBy::TimeLimit))
+        Ok(self.is_late().then_some(StoppedBy::TimeLimit))
     }
 
     pub(super) fn done(&self) -> u32 {
         self.done
     }
 
-    /// How much of the samples is done.
-    pub(super) fn share(&self) -> f64 {
-        f64::from(self.done) / f64::from(self.samples)
+    /// How much of the samples is done, with `count` more of a share of the pixels.
+    pub(super) fn share(&self, count: u32, of_pixels: f64) -> f64 {
+        (f64::from(self.done) + f64::from(count) * of_pixels) / f64::from(self.samples)
+    }
+
+    /// Whether the time is up.
+    pub(super) fn is_late(&self) -> bool {
+        self.deadline
+            .is_some_and(|deadline| Instant::now() >= deadline)
     }
 }
 

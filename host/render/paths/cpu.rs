@@ -1,5 +1,6 @@
 //! The CPU path: the function that the GPU's entry point calls, over bands of rows.
 
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::Instant;
 
 use glam::UVec2;
@@ -8,7 +9,8 @@ use spherule_kernel::integrate::{Scenery, trace_pixel};
 use spherule_kernel::{Accumulator, Effects, PathLaunch, Rung};
 
 use super::budget::{Budget, Reached, StoppedBy, noise};
-use super::{Prepared, Progress, Settings};
+use super::preview::Preview;
+use super::{Prepared, Progress, Sampled, Settings};
 use crate::error::{Error, Result};
 use crate::film;
 use crate::render::Timings;
@@ -17,6 +19,8 @@ use crate::trace::single::Single;
 
 /// Rows in a band.
 const BAND_ROWS: usize = 2;
+/// After so many pixels it is asked whether the render goes on.
+const RUN: usize = 16;
 
 /// Effects of scenes whose light does not bounce.
 const LOCAL: u32 = Effects::ANTIALIASING
@@ -34,23 +38,48 @@ const STILL: u32 = Effects::ALL
     .to_bits();
 const ALL: u32 = Effects::ALL.to_bits();
 
-type Trace = fn(Rung, &Prepared, Option<&Levels>, &PathLaunch, &mut [Accumulator]);
+type Trace = fn(
+    Rung,
+    &Prepared,
+    Option<&Levels>,
+    &PathLaunch,
+    &mut [Accumulator],
+    &(dyn Fn(usize) -> bool + Sync),
+);
 
 /// Renders on every thread of the pool.
 ///
 /// # Errors
 ///
-/// [`OutOfMemory`](crate::Error::OutOfMemory) if the host has no room for the image.
-pub fn render(
-    prepared: &Prepared,
-    settings: &Settings,
-    progress: Progress<'_>,
-) -> Result<(Vec<Accumulator>, Timings, Reached)> {
+/// [`OutOfHostMemory`](crate::Error::OutOfHostMemory) if the host has no room for the image.
+pub fn render(prepared: &Prepared, settings: &Settings, progress: Progress<'_>) -> Result<Sampled> {
+    let begun = Instant::now();
     let trace = trace_for(prepared.compiled, settings.rung);
     let size = prepared.launch.image_size;
     let levels = Levels::of(prepared.nodes.tree());
     let mut accumulators = film::allocate::<Accumulator>(size.x, size.y)?;
+    // Traces until `goes_on`, which is told the share of the pixels that are done, says no; whether it never did.
+    let pass = |launch: &PathLaunch,
+                accumulators: &mut [Accumulator],
+                goes_on: &(dyn Fn(f64) -> bool + Sync)| {
+        let (done, all) = (AtomicUsize::new(0), accumulators.len());
+        let goes_on = |more: usize| {
+            let done = done.fetch_add(more, Ordering::Relaxed) + more;
+            goes_on(done as f64 / all as f64)
+        };
+        let (rung, levels) = (settings.rung, levels.as_ref());
+        trace(rung, prepared, levels, launch, accumulators, &goes_on);
+        done.into_inner() == all
+    };
     let started = Instant::now();
+    let mut preview = None;
+    if settings.time_limit.is_some() {
+        let mut coarse = Preview::of(&prepared.launch, accumulators.len())?;
+        let launch = coarse.launch;
+        if pass(&launch, &mut coarse.sums, &|_| progress(0.0).is_continue()) {
+            preview = Some(coarse);
+        }
+    }
     let deadline = settings.time_limit.map(|limit| started + limit);
     let mut budget = Budget::new(prepared.samples, deadline, settings.noise);
     let mut stopped_by = StoppedBy::Samples;
@@ -61,32 +90,47 @@ pub fn render(
             ..prepared.launch
         };
         let begun = Instant::now();
-        trace(
-            settings.rung,
-            prepared,
-            levels.as_ref(),
-            &launch,
-            &mut accumulators,
-        );
+        let is_interrupted = AtomicBool::new(false);
+        let goes_on = |share: f64| {
+            let goes_on = progress(budget.share(count, share)).is_continue();
+            if !goes_on {
+                is_interrupted.store(true, Ordering::Relaxed);
+            }
+            goes_on && !budget.is_late()
+        };
+        if !pass(&launch, &mut accumulators, &goes_on) {
+            stopped_by = if is_interrupted.into_inner() {
+                StoppedBy::Interrupted
+            } else {
+                StoppedBy::TimeLimit
+            };
+            break;
+        }
         let stop = budget.took(count, begun.elapsed(), || {
             Ok::<_, Error>(noise(&accumulators))
         })?;
-        progress(budget.share());
         if let Some(by) = stop {
             stopped_by = by;
             break;
         }
     }
     let timings = Timings {
+        setup: started - begun,
         trace: started.elapsed(),
         ..Timings::default()
     };
     let reached = Reached {
         samples: budget.done(),
+        asked: prepared.samples,
         noise: noise(&accumulators),
         stopped_by,
     };
-    Ok((accumulators, timings, reached))
+    Ok(Sampled {
+        accumulators,
+        preview,
+        timings,
+        reached,
+    })
 }
 
 /// The loop that was compiled for the rung and for the fewest effects that hold these.
@@ -117,6 +161,7 @@ fn trace<const EFFECTS: u32, const RUNG: u32>(
     levels: Option<&Levels>,
     launch: &PathLaunch,
     accumulators: &mut [Accumulator],
+    goes_on: &(dyn Fn(usize) -> bool + Sync),
 ) {
     let world = &prepared.world;
     let called = Effects::from_bits(launch.called_effects);
@@ -139,12 +184,21 @@ fn trace<const EFFECTS: u32, const RUNG: u32>(
         .par_chunks_mut(width * BAND_ROWS)
         .enumerate()
         .for_each(|(band, accumulators)| {
-            for (index, accumulator) in accumulators.iter_mut().enumerate() {
-                let at = UVec2::new(
-                    (index % width) as u32,
-                    (band * BAND_ROWS + index / width) as u32,
-                );
-                *accumulator = trace_pixel(&scenery, at, *accumulator);
+            let mut before = 0;
+            for (run, accumulators) in accumulators.chunks_mut(RUN).enumerate() {
+                if !goes_on(before) {
+                    return;
+                }
+                before = accumulators.len();
+                for (index, accumulator) in accumulators.iter_mut().enumerate() {
+                    let index = run * RUN + index;
+                    let at = UVec2::new(
+                        (index % width) as u32,
+                        (band * BAND_ROWS + index / width) as u32,
+                    );
+                    *accumulator = trace_pixel(&scenery, at, *accumulator);
+                }
             }
+            goes_on(before);
         });
 }

@@ -1,15 +1,17 @@
 //! The GPU path: the `trace_paths` entry point, tile by tile and run of samples by run.
 
+use std::cell::Cell;
 use std::time::{Duration, Instant};
 
-use glam::UVec2;
+use glam::{UVec2, Vec4};
 use spherule_kernel::tree::Node;
-use spherule_kernel::{Accumulator, Effects, PathLaunch};
+use spherule_kernel::{Accumulator, Effects, Light, Material, PathLaunch, Sphere};
 
 use super::budget::{Budget, Reached, StoppedBy, noise};
-use super::{Prepared, Progress, Settings};
+use super::preview::Preview;
+use super::{Prepared, Progress, Sampled, Settings};
 use crate::accuracy::canary::Canary;
-use crate::device::{Access, Gpu, Kernel};
+use crate::device::{Access, Buffer, Gpu, Kernel};
 use crate::error::{Error, Result};
 use crate::film;
 use crate::kernel_module;
@@ -23,6 +25,9 @@ const ENTRY: &str = "trace_paths";
 const TESTS_IN_A_TREE: u64 = 256;
 /// Rays of one sample of one pixel, for the size of the first launch.
 const RAYS_A_SAMPLE: u64 = 4;
+/// The fewest pixels of a launch: fewer threads leave a GPU idle, and then it takes as long however little it does.
+const FEWEST_ON_GPU: u64 = 1 << 16;
+const FEWEST_IN_SOFTWARE: u64 = 1 << 12;
 
 /// Compiles the kernel for these settings.
 ///
@@ -42,6 +47,119 @@ pub fn compile(gpu: &Gpu, prepared: &Prepared, settings: &Settings) -> Result<Ke
     gpu.kernel(&module, ENTRY, &access)
 }
 
+/// What the launches are given, and what they write to.
+struct Launcher<'a> {
+    gpu: &'a Gpu,
+    kernel: Kernel,
+    uniform: Buffer<PathLaunch>,
+    spheres: Buffer<Sphere>,
+    velocities: Buffer<Vec4>,
+    material_ids: Buffer<u32>,
+    materials: Buffer<Material>,
+    lights: Buffer<Light>,
+    tables: Buffer<f32>,
+    nodes: Buffer<Node>,
+    sums: Buffer<Accumulator>,
+    /// What a sample takes, in intersections; the fewest pixels of a launch; and what it gets as far as is known.
+    work: u64,
+    fewest: u64,
+    pace: Pace,
+}
+
+impl<'a> Launcher<'a> {
+    fn new(gpu: &'a Gpu, prepared: &Prepared, kernel: Kernel, pixels: usize) -> Result<Self> {
+        let world = &prepared.world;
+        let tests = if prepared.nodes.is_empty() {
+            world.spheres.len() as u64
+        } else {
+            TESTS_IN_A_TREE
+        };
+        let work = tests.max(1) * RAYS_A_SAMPLE;
+        let fewest = if gpu.is_software() {
+            FEWEST_IN_SOFTWARE
+        } else {
+            FEWEST_ON_GPU
+        };
+        Ok(Self {
+            gpu,
+            kernel,
+            uniform: gpu.upload_uniform("launch", &prepared.launch)?,
+            spheres: gpu.upload("spheres", &world.spheres)?,
+            velocities: gpu.upload("velocities", &prepared.velocities)?,
+            material_ids: gpu.upload("material ids", &world.material_ids)?,
+            materials: gpu.upload("materials", &world.materials)?,
+            lights: gpu.upload("lights", &prepared.lights)?,
+            tables: gpu.upload("tables", &prepared.tables)?,
+            nodes: gpu.upload("nodes", &prepared.nodes)?,
+            sums: gpu.zeroed("accumulators", pixels)?,
+            work,
+            fewest,
+            // What a sample takes by fog, glass or bounces is known only from the first of them.
+            pace: Pace::starting_at(work * fewest),
+        })
+    }
+
+    /// Adds the samples of `launch`, some of its rows after the other, so that no launch takes long. Between them `goes_on` is told
+    /// how many pixels are done. Returns how many are done in the end, and how long they took.
+    fn pass(
+        &mut self,
+        launch: &PathLaunch,
+        goes_on: impl Fn(usize) -> bool,
+    ) -> Result<(usize, Duration)> {
+        let (width, height) = (launch.tile_size.x, launch.tile_size.y);
+        let alignment = self.gpu.limits().min_storage_buffer_offset_alignment;
+        let work = self.work * u64::from(launch.sample_count);
+        let mut took = Duration::ZERO;
+        let mut row = 0;
+        while row < height && goes_on((row * width) as usize) {
+            let pixels = self.pace.pixels(work).max(self.fewest);
+            let rows = rows(width, pixels, alignment).min(height - row);
+            let part = PathLaunch {
+                tile_origin: launch.tile_origin + UVec2::new(0, row),
+                tile_size: UVec2::new(width, rows),
+                ..*launch
+            };
+            self.gpu.update(&self.uniform, &part)?;
+            let range = (row * width) as usize..((row + rows) * width) as usize;
+            let time = self.gpu.launch(
+                &self.kernel,
+                &[
+                    self.uniform.binding(),
+                    self.spheres.binding(),
+                    self.velocities.binding(),
+                    self.material_ids.binding(),
+                    self.materials.binding(),
+                    self.lights.binding(),
+                    self.tables.binding(),
+                    self.nodes.binding(),
+                    self.sums.binding_of(range),
+                ],
+                self.kernel.workgroups_for([width, rows, 1]),
+            )?;
+            self.pace.learn(u64::from(width * rows) * work, time.best());
+            took += time.best();
+            row += rows;
+        }
+        Ok(((row * width) as usize, took))
+    }
+
+    /// Reads the sums of the first pixels.
+    fn read(&self, pixels: &mut [Accumulator]) -> Result<()> {
+        self.gpu.read_into(&self.sums, pixels)
+    }
+}
+
+/// How many rows make at least so many pixels, if each launch's first is to lie in memory where the device takes it.
+fn rows(width: u32, pixels: u64, alignment: u32) -> u32 {
+    let pixel = size_of::<Accumulator>() as u64;
+    let mut step = 1;
+    while !(u64::from(width) * pixel * step).is_multiple_of(u64::from(alignment)) {
+        step *= 2;
+    }
+    let rows = pixels.div_ceil(u64::from(width));
+    rows.next_multiple_of(step).min(u64::from(u32::MAX)) as u32
+}
+
 /// Renders on `gpu`.
 ///
 /// # Errors
@@ -53,51 +171,48 @@ pub fn render(
     prepared: &Prepared,
     settings: &Settings,
     progress: Progress<'_>,
-) -> Result<(Vec<Accumulator>, Timings, Reached)> {
+) -> Result<Sampled> {
     let started = Instant::now();
-    let world = &prepared.world;
+    let size = prepared.launch.image_size;
+    let mut image = film::allocate::<Accumulator>(size.x, size.y)?;
     let kernel = compile(gpu, prepared, settings)?;
     let compile = started.elapsed();
-    let size = prepared.launch.image_size;
-    let spheres = gpu.upload("spheres", &world.spheres)?;
-    let velocities = gpu.upload("velocities", &prepared.velocities)?;
-    let material_ids = gpu.upload("material ids", &world.material_ids)?;
-    let materials = gpu.upload("materials", &world.materials)?;
-    let lights = gpu.upload("lights", &prepared.lights)?;
-    let tables = gpu.upload("tables", &prepared.tables)?;
-    let nodes = gpu.upload("nodes", &prepared.nodes)?;
-    let uniform = gpu.upload_uniform("launch", &prepared.launch)?;
     let tiles = Tiles::new::<Accumulator>(gpu, size);
-    let sums = gpu.zeroed::<Accumulator>("accumulators", tiles.max_pixels())?;
+    let mut launcher = Launcher::new(gpu, prepared, kernel, tiles.max_pixels())?;
     let mut timings = Timings {
         setup: started.elapsed(),
         compile,
         ..Timings::default()
     };
 
-    let tests = if prepared.nodes.is_empty() {
-        world.spheres.len() as u64
-    } else {
-        TESTS_IN_A_TREE
-    };
-    let work = tests * RAYS_A_SAMPLE;
     let tracing = Instant::now();
-    let mut image = film::allocate::<Accumulator>(size.x, size.y)?;
+    let mut preview = None;
+    if settings.time_limit.is_some() {
+        let mut coarse = Preview::of(&prepared.launch, tiles.max_pixels())?;
+        let go_on = |_| progress(0.0).is_continue();
+        let (done, took) = launcher.pass(&coarse.launch, go_on)?;
+        timings.trace += took;
+        launcher.read(&mut coarse.sums)?;
+        preview = (done == coarse.sums.len()).then_some(coarse);
+    }
     let mut origin = UVec2::ZERO;
     let (mut fewest, mut stopped_by) = (u32::MAX, StoppedBy::Samples);
     while origin.y < size.y {
-        // Noise is that of the whole image, as far as one readback reaches.
-        let work = if settings.noise.is_some() { 1 } else { work };
-        let tile = tiles.at(origin, &Pace::first_on(gpu), work);
+        // A tile is as large as one buffer may be: noise is that of the whole image, as far as this reaches.
+        let tile = tiles.at(origin, &Pace::first_on(gpu), 1);
         let count = (tile.x * tile.y) as usize;
         let start = tiles.start(origin);
+        let all = image.len();
+        let pixels = &mut image[start..start + count];
         // What is left of the time is shared out evenly over what is left of the image.
         let deadline = settings.time_limit.map(|limit| {
             let left = limit.saturating_sub(tracing.elapsed());
-            Instant::now() + left.mul_f64(count as f64 / (image.len() - start) as f64)
+            Instant::now() + left.mul_f64(count as f64 / (all - start) as f64)
         });
         let mut budget = Budget::new(prepared.samples, deadline, settings.noise);
-        gpu.clear(&sums)?;
+        let mut in_part = (0, 0);
+        let is_interrupted = Cell::new(false);
+        gpu.clear(&launcher.sums)?;
         while let Some((first, samples)) = budget.next() {
             let launch = PathLaunch {
                 tile_origin: origin,
@@ -106,27 +221,23 @@ pub fn render(
                 sample_count: samples,
                 ..prepared.launch
             };
-            gpu.update(&uniform, &launch)?;
-            let took = gpu.launch(
-                &kernel,
-                &[
-                    uniform.binding(),
-                    spheres.binding(),
-                    velocities.binding(),
-                    material_ids.binding(),
-                    materials.binding(),
-                    lights.binding(),
-                    tables.binding(),
-                    nodes.binding(),
-                    sums.binding(),
-                ],
-                kernel.workgroups_for([tile.x, tile.y, 1]),
-            )?;
-            timings.trace += took.best();
-            let stop = budget.took(samples, took.best(), || {
-                Ok::<_, Error>(noise(&gpu.read_first(&sums, count)?))
+            let goes_on = |done: usize| {
+                let share = budget.share(samples, done as f64 / count as f64);
+                let done = (start as f64 + count as f64 * share) / all as f64;
+                is_interrupted.set(progress(done).is_break());
+                !is_interrupted.get() && !budget.is_late()
+            };
+            let (done, took) = launcher.pass(&launch, goes_on)?;
+            timings.trace += took;
+            if done < count {
+                in_part = (done, samples);
+                stopped_by = StoppedBy::TimeLimit;
+                break;
+            }
+            let stop = budget.took(samples, took, || {
+                launcher.read(pixels)?;
+                Ok::<_, Error>(noise(pixels))
             })?;
-            progress((start as f64 + count as f64 * budget.share()) / image.len() as f64);
             if let Some(by) = stop {
                 if by != StoppedBy::Samples {
                     stopped_by = by;
@@ -137,21 +248,35 @@ pub fn render(
         fewest = fewest.min(budget.done());
 
         let reading = Instant::now();
-        let pixels = gpu.read_first(&sums, count)?;
-        check_written(gpu, &pixels, budget.done())?;
-        image[start..start + count].copy_from_slice(&pixels);
+        launcher.read(pixels)?;
+        let (with_more, others) = pixels.split_at(in_part.0);
+        check_written(gpu, with_more, budget.done() + in_part.1)?;
+        check_written(gpu, others, budget.done())?;
         timings.readback += reading.elapsed();
         origin = tiles.next(origin, tile);
+        if is_interrupted.get() {
+            stopped_by = StoppedBy::Interrupted;
+            if origin.y < size.y {
+                fewest = 0;
+            }
+            break;
+        }
     }
     if timings.trace == Duration::ZERO {
         timings.trace = tracing.elapsed();
     }
     let reached = Reached {
         samples: fewest,
+        asked: prepared.samples,
         noise: noise(&image),
         stopped_by,
     };
-    Ok((image, timings, reached))
+    Ok(Sampled {
+        accumulators: image,
+        preview,
+        timings,
+        reached,
+    })
 }
 
 /// A kernel that panics on the device returns without a word; its pixel then lacks samples.
@@ -171,4 +296,19 @@ fn check_written(gpu: &Gpu, pixels: &[Accumulator], samples: u32) -> Result<()> 
             pixels.len()
         ),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parts_of_a_tile_begin_where_a_device_takes_them() {
+        assert_eq!(rows(1920, 65_536, 256), 35);
+        // 17 pixels of 32 bytes.
+        assert_eq!(rows(17, 100, 256), 8);
+        assert_eq!(rows(17, 100, 32), 6);
+        assert_eq!(rows(18, 1, 64), 1);
+        assert_eq!(rows(65_536, 1, 256), 1);
+    }
 }

@@ -6,21 +6,28 @@
 //! | [`cpu`] | the kernel's function over bands of rows, on every thread |
 //! | [`gpu`] | the kernel's entry point over tiles and runs of samples |
 //! | [`budget`] | when enough samples are enough |
+//! | `preview` | a coarse image, for pixels that have no sample when the time is up |
 
 pub mod budget;
 pub mod cpu;
 pub mod gpu;
 pub mod prepare;
+mod preview;
 
-use spherule_kernel::{Accumulator, Effects, Pixel, Shading};
+use std::time::Instant;
 
-use super::{Progress, Rendered, Settings};
+use rayon::prelude::*;
+use spherule_kernel::{Accumulator, Effects, Hit, Pixel, Shading};
+
+use super::{Progress, Rendered, Settings, Timings};
 use crate::device::Device;
 use crate::error::Result;
 use crate::film::Image;
+use crate::memory;
 use crate::scene::Scene;
 pub use budget::{Reached, StoppedBy};
 pub use prepare::Prepared;
+use preview::Preview;
 
 /// Which effects the pipeline is compiled for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -54,6 +61,16 @@ impl EffectChoice {
     }
 }
 
+/// What a device made of a scene.
+pub struct Sampled {
+    /// The sums of each pixel's samples.
+    accumulators: Vec<Accumulator>,
+    /// What pixels without a sample show.
+    preview: Option<Preview>,
+    timings: Timings,
+    reached: Reached,
+}
+
 /// Renders `scene` by light paths.
 ///
 /// # Errors
@@ -65,28 +82,87 @@ pub fn render(
     device: &Device,
     progress: Progress<'_>,
 ) -> Result<Rendered> {
+    let started = Instant::now();
+    let pixels = u64::from(scene.width) * u64::from(scene.height);
     let prepared = Prepared::new(scene, settings.effects, settings.acceleration)?;
-    let (accumulators, timings, reached) = match device {
+    let setup = started.elapsed();
+    // Had before the work, which is not to be done in vain.
+    let room_for_alpha = || memory::room(pixels, "the image's alpha channel");
+    let is_transparent = prepared.shown.any(Effects::TRANSPARENT_BACKGROUND);
+    let mut alpha: Vec<f32> = if is_transparent {
+        room_for_alpha()?
+    } else {
+        Vec::new()
+    };
+    let Sampled {
+        mut accumulators,
+        preview,
+        mut timings,
+        reached,
+    } = match device {
         Device::Cpu => cpu::render(&prepared, settings, progress)?,
         Device::Gpu(gpu) => gpu::render(gpu, &prepared, settings, progress)?,
     };
-    let pixels = accumulators
-        .iter()
-        .map(|sum| Pixel::new(sum.color(), depth(sum)))
-        .collect();
-    let mut image = Image::new(scene.width, scene.height, Shading::Lit, pixels);
-    if prepared.shown.any(Effects::TRANSPARENT_BACKGROUND) {
-        image.set_alpha(accumulators.iter().map(Accumulator::alpha).collect());
+    timings.setup += setup;
+    let mut traced = pixels;
+    if reached.samples == 0 {
+        let is_traced = |sum: &&Accumulator| sum.samples() > 0.0;
+        traced = accumulators.par_iter().filter(is_traced).count() as u64;
+        match &preview {
+            Some(preview) => preview.fill(scene.width, &mut accumulators),
+            // Without memory for them the missing pixels are black.
+            None if !is_transparent => alpha = room_for_alpha().unwrap_or_default(),
+            None => {}
+        }
+    }
+    if alpha.capacity() > 0 {
+        let of = |sum: &Accumulator| {
+            if is_transparent {
+                sum.alpha()
+            } else {
+                sum.samples().min(1.0)
+            }
+        };
+        alpha.extend(accumulators.iter().map(of));
+    }
+    let mut image = Image::new(
+        scene.width,
+        scene.height,
+        Shading::Lit,
+        into_pixels(accumulators),
+    );
+    if !alpha.is_empty() {
+        image.set_alpha(alpha);
     }
     image.develop = scene.develop;
     Ok(Rendered {
         image,
+        traced,
         timings,
         reached: Some(reached),
     })
 }
 
-/// A depth of exactly zero is a pixel that no kernel wrote.
+/// The pixels of these sums, in their memory.
+fn into_pixels(sums: Vec<Accumulator>) -> Vec<Pixel> {
+    const SUMS_SIZE: usize = size_of::<Accumulator>() / size_of::<Pixel>();
+    let count = sums.len();
+    let mut pixels: Vec<Pixel> = bytemuck::allocation::cast_vec(sums);
+    for index in 0..count {
+        let from = index * SUMS_SIZE;
+        let sum: Accumulator =
+            *bytemuck::from_bytes(bytemuck::cast_slice(&pixels[from..][..SUMS_SIZE]));
+        pixels[index] = Pixel::new(sum.color(), depth(&sum));
+    }
+    pixels.truncate(count);
+    pixels.shrink_to_fit();
+    pixels
+}
+
+/// A depth of exactly zero is a pixel that no kernel wrote; none was traced for a pixel without samples.
 fn depth(sum: &Accumulator) -> f32 {
+    if sum.samples() == 0.0 {
+        return Hit::NONE_T;
+    }
     sum.depth().max(f32::MIN_POSITIVE)
 }
