@@ -86,6 +86,13 @@ pub enum Error {
         purpose: String,
     },
 
+    /// The pool of threads cannot be started.
+    #[error("the pool of threads cannot be started: {reason}")]
+    Threads {
+        /// What rayon or the system said.
+        reason: String,
+    },
+
     /// A launch asks for more threads, workgroups or workgroup memory than the device has.
     #[error(
         "the launch of {kernel} does not fit {device}: {what} is {asked}, and the limit is {limit}"
@@ -218,6 +225,7 @@ impl Error {
             Self::BufferTooLarge { .. } | Self::OutOfMemory { .. } => {
                 "render fewer spheres or a smaller image, or use `--device cpu`, which uses the host's memory".into()
             }
+            Self::Threads { .. } => "start it once, before any work; or leave rayon's pool as it is".into(),
             Self::LaunchLimits { .. } => {
                 "launch fewer or smaller workgroups, or use a device with higher limits (`spherule devices` lists them)"
                     .into()

@@ -17,6 +17,7 @@
 //! | [`film`] | images: encoding, comparison |
 //! | [`mod@write`] | outputs: checked before the work, written whole or not at all |
 //! | [`error`] | [`Error`]: what can go wrong, and how to mend it |
+//! | [`threads`] | the pool of threads that work on the CPU is done by |
 //! | `memory` | memory of the host that may not be there |
 //! | [`kernel_module`] | the kernel's SPIR-V that this build embeds |
 //! | `plural` | counts with their nouns |
@@ -37,6 +38,7 @@ mod plural;
 pub mod render;
 pub mod scene;
 mod shown;
+pub mod threads;
 pub mod trace;
 pub mod write;
 

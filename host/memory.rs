@@ -83,6 +83,23 @@ fn available() -> Option<u64> {
     kibibytes.checked_mul(1024)
 }
 
+/// How many bytes of addresses this process may use (`ulimit -v`); `None` without a limit.
+pub(crate) fn limit() -> Option<u64> {
+    #[cfg(unix)]
+    {
+        let mut limit = libc::rlimit {
+            rlim_cur: libc::RLIM_INFINITY,
+            rlim_max: libc::RLIM_INFINITY,
+        };
+        // SAFETY: it writes to the struct that it is given.
+        let asked = unsafe { libc::getrlimit(libc::RLIMIT_AS, &raw mut limit) };
+        if asked == 0 && limit.rlim_cur != libc::RLIM_INFINITY {
+            return Some(limit.rlim_cur);
+        }
+    }
+    None
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -95,4 +112,3 @@ mod tests {
             assert!(error.to_string().contains("1073741824.0 GiB"), "{error}");
         }
     }
-}

@@ -42,10 +42,9 @@ pub(super) enum Command {
 
 #[derive(Debug, Args)]
 #[command(allow_negative_numbers = true)]
-#[command(
-    after_help = "Exit codes: 0 done, 1 the render or the check failed, 2 the input is wrong.\n\
-    SPHERULE_LOG=debug logs what happens; RAYON_NUM_THREADS=N limits the CPU's threads."
-)]
+#[command(after_help = "Ctrl-C writes the picture as far as it is.\n\
+    Exit codes: 0 done, 1 the render or the check failed, 2 the input is wrong, 128 and a signal's number if that ended it.\n\
+    SPHERULE_LOG=debug logs what happens; RAYON_NUM_THREADS=N sets the number of the CPU's threads.")]
 pub(super) struct RenderArguments {
     /// The scene (.toml) or molecule (.pdb, .ent, .xyz)
     pub(super) input: PathBuf,
@@ -91,7 +90,7 @@ pub(super) struct RenderArguments {
     #[arg(long, value_name = "auto|all|none|LIST", default_value = "auto", value_parser = effects)]
     pub(super) effects: EffectChoice,
 
-    /// Take no more samples after this many seconds of tracing
+    /// Take no more samples after this many seconds of tracing, also in the middle of one: pixels that have none by then show a coarse preview
     #[arg(long, value_name = "SECONDS", value_parser = positive)]
     pub(super) time_limit: Option<f64>,
 

@@ -16,6 +16,7 @@ mod report;
 
 use std::ffi::OsString;
 use std::io::Write;
+use std::num::NonZero;
 use std::path::Path;
 use std::process::ExitCode;
 use std::time::Instant;
@@ -27,16 +28,17 @@ use tracing_subscriber::prelude::*;
 
 use args::{Arguments, Command};
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, SceneError};
 use crate::plural::count_of;
 use crate::scene::Scene;
 use crate::shown::shown_path;
 use crate::write::Output;
+use crate::threads::{self, Fewer};
 
 /// Runs the command line of this process; its exit code is for `main` to return.
 ///
-/// Where a panic would be reported, what signals that end the process do first, and where log records
-/// go if they go nowhere yet, is set for the whole process. Nothing else of it is changed, so that
+/// Where a panic would be reported, what signals that end the process do first, where log records
+/// go if they go nowhere yet, and rayon's pool of threads if there is none, is set for the whole process. Nothing else of it is changed, so that
 /// other threads may go on meanwhile.
 #[must_use]
 pub fn main() -> ExitCode {
@@ -62,14 +64,14 @@ pub fn run(arguments: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> 
             return u8::try_from(error.exit_code()).map_or(ExitCode::FAILURE, ExitCode::from);
         }
     };
-    let done = match arguments.command {
+    let done = start_threads().and_then(|()| match arguments.command {
         Command::Render(arguments) => render::run(&arguments),
         Command::Devices(arguments) => devices::run(&arguments),
         Command::Check(arguments) => check::run(&arguments),
         Command::Accuracy(arguments) => accuracy::run(&arguments),
         Command::Explain(arguments) => explain::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),
-    };
+    });
     match done {
         Ok(code) => code,
         Err(error) => {
@@ -78,6 +80,51 @@ pub fn run(arguments: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> 
             ExitCode::from(code)
         }
     }
+}
+
+/// Starts as many threads as `RAYON_NUM_THREADS` says, or one for each processor.
+fn start_threads() -> Result<()> {
+    const NAME: &str = "RAYON_NUM_THREADS";
+    let refused = |text: &str| {
+        SceneError::without_place(
+            "",
+            format!(
+                "{NAME} is `{}`, which is no number of threads",
+                text.escape_debug()
+            ),
+            format!(
+                "give a number from 1 to {}, or unset it for one for each processor",
+                threads::most()
+            ),
+        )
+    };
+    let wanted = match std::env::var_os(NAME) {
+        // Rayon, too, takes 0 for the number of processors.
+        Some(text) if text != "0" && !text.is_empty() => {
+            let text = text.to_string_lossy();
+            Some(text.parse::<NonZero<usize>>().map_err(|_| refused(&text))?)
+        }
+        _ => None,
+    };
+    let threads = match threads::start(wanted) {
+        // A program that runs several commands has its pool.
+        Err(Error::Threads { .. }) => return Ok(()),
+        started => started?,
+    };
+    if let Some(fewer) = threads.fewer {
+        note(&format!(
+            "{} instead of {}: {}",
+            count_of(threads.count, "thread"),
+            threads.wanted,
+            match fewer {
+                Fewer::Capped => "more would only take memory",
+                Fewer::Memory =>
+                    "more would take too much of the memory that this process may use (ulimit -v)",
+                Fewer::System => "the system starts no more (ulimit -u, ulimit -v)",
+            }
+        ));
+    }
+    Ok(())
 }
 
 /// Prints to stdout.

@@ -86,8 +86,11 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<ExitCode> {
     refuse_clashes(&outputs)?;
     refuse_inputs(&outputs, std::slice::from_ref(&arguments.input))?;
     let (scene, early, load) = std::thread::scope(|scope| {
-        let opener =
-            opens_early(arguments).then(|| scope.spawn(|| Device::open(&arguments.device)));
+        let open = || Device::open(&arguments.device);
+        // Without a thread for it the device is opened afterwards.
+        let opener = opens_early(arguments)
+            .then(|| std::thread::Builder::new().spawn_scoped(scope, open).ok())
+            .flatten();
         let scene = super::load(&arguments.input);
         let load = started.elapsed();
         let early = opener.map(|opener| {
