@@ -1,5 +1,10 @@
 //! The command `spherule`.
 
+use spherule::cli::Allocator;
+
+#[global_allocator]
+static ALLOCATOR: Allocator = Allocator;
+
 fn main() -> std::process::ExitCode {
     quiet_mesa();
     spherule::cli::main()

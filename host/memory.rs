@@ -112,3 +112,4 @@ mod tests {
             assert!(error.to_string().contains("1073741824.0 GiB"), "{error}");
         }
     }
+}

@@ -669,6 +669,14 @@ fn a_time_limit_ends_a_render() {
     );
 }
 
+#[test]
+fn what_is_done_before_the_tracing_is_timed_on_the_cpu_too() {
+    let scene = gallery("soft-light", 48, 32, 1);
+    let rendered = render(&scene, Settings::default(), &Device::Cpu, QUIET).expect("an image");
+    // A tree over 327 atoms.
+    assert!(rendered.timings.setup > std::time::Duration::ZERO);
+}
+
 /// Effects are called for by what the scene says, and by nothing else.
 #[test]
 fn each_effect_is_called_for_by_its_key() {

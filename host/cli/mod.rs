@@ -9,6 +9,7 @@ mod check;
 mod devices;
 mod explain;
 mod interrupt;
+mod last_resort;
 mod precision;
 mod progress;
 mod render;
@@ -32,8 +33,9 @@ use crate::error::{Error, Result, SceneError};
 use crate::plural::count_of;
 use crate::scene::Scene;
 use crate::shown::shown_path;
-use crate::write::Output;
 use crate::threads::{self, Fewer};
+use crate::write::Output;
+pub use last_resort::Allocator;
 
 /// Runs the command line of this process; its exit code is for `main` to return.
 ///
@@ -55,6 +57,7 @@ pub fn main() -> ExitCode {
 pub fn run(arguments: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> ExitCode {
     set_panic_hook();
     interrupt::install();
+    last_resort::install();
     start_log();
     let arguments = match Arguments::try_parse_from(arguments) {
         Ok(arguments) => arguments,

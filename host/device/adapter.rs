@@ -6,6 +6,7 @@ use std::str::FromStr;
 use serde::Serialize;
 
 use crate::error::{Error, Result};
+use crate::memory;
 use crate::shown::shown;
 
 /// Which device a person wants.
@@ -164,6 +165,16 @@ pub fn list_adapters() -> Vec<AdapterReport> {
         .collect()
 }
 
+/// What may keep a driver from being loaded or from working, as the end of a sentence: software adapters take half a gigabyte of addresses and more.
+pub(super) fn memory_limit() -> String {
+    memory::limit().map_or(String::new(), |bytes| {
+        format!(
+            "; this process may use {} MiB of memory (ulimit -v), and a driver may need more",
+            bytes >> 20
+        )
+    })
+}
+
 /// The adapter that `choice` means, or `None` for the CPU; with the reason in a few words.
 ///
 /// # Errors
@@ -216,7 +227,10 @@ pub(super) fn choose(choice: &DeviceChoice) -> Result<(Option<wgpu::Adapter>, St
             };
             Err(Error::NoAdapter {
                 wanted,
-                found: "this system has no graphics driver that wgpu can use".into(),
+                found: format!(
+                    "this system has no graphics driver that wgpu can use{}",
+                    memory_limit()
+                ),
             })
         }
     }

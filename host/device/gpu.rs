@@ -164,7 +164,7 @@ impl Gpu {
         }))
         .map_err(|error| Error::DeviceRefused {
             adapter: name.clone(),
-            reason: one_line(&error),
+            reason: one_line(&error) + &adapter::memory_limit(),
         })?;
         let watch = Watch::over(&device, &name);
         let timer = if features.contains(wgpu::Features::TIMESTAMP_QUERY) {

@@ -34,7 +34,7 @@ use crate::error::{Error, Result, SceneError};
 use crate::film::Image;
 use crate::memory;
 use crate::scene::Scene;
-use crate::scene::tree::Acceleration;
+use crate::scene::tree::{self, Acceleration};
 use paths::{EffectChoice, Reached, StoppedBy};
 
 /// What is fixed before the kernel is compiled, on the GPU and on the CPU.
@@ -73,6 +73,12 @@ impl From<(Shading, Rung)> for Settings {
         }
     }
 }
+
+/// Memory for all that is small, in bytes.
+const MARGIN: u64 = 4 << 20;
+/// What a texel of the surroundings takes at most while tables are made of it: its probability, its share of a vector that grows, and the
+/// table.
+const BYTES_A_TEXEL: u64 = 64;
 
 /// Told how far a render is, a number from 0 to 1, and asked whether it goes on.
 ///
@@ -158,6 +164,7 @@ pub fn render(
         return paths::render(scene, &settings, device, progress);
     }
     let launch = whole_image(scene)?;
+    memory_for(scene, size_of::<Pixel>() as u64)?;
     let (mut pixels, timings) = match device {
         Device::Cpu => {
             let started = Instant::now();
@@ -200,6 +207,28 @@ pub fn render(
         timings,
         reached: None,
     })
+}
+
+/// Whether there is memory for the image of `scene`, of which each pixel takes so many bytes on the host, and for the tree: what is
+/// computed is not to be lost for want of it.
+///
+/// # Errors
+///
+/// [`Error::OutOfHostMemory`] with the sum.
+fn memory_for(scene: &Scene, bytes_a_pixel: u64) -> Result<()> {
+    let pixels = u64::from(scene.width) * u64::from(scene.height);
+    let spheres = scene.world.spheres.len() as u64;
+    let image = scene.sky.as_ref().and_then(|sky| sky.image.as_ref());
+    let texels = image.map_or(0, |image| image.texels.len() as u64);
+    memory::check(
+        bytes_a_pixel * pixels + tree::BYTES_A_SPHERE * spheres + BYTES_A_TEXEL * texels + MARGIN,
+        &format!(
+            "an image of {} × {} pixels of {spheres} sphere{}",
+            scene.width,
+            scene.height,
+            if spheres == 1 { "" } else { "s" },
+        ),
+    )
 }
 
 /// Makes pixels that no kernel has written black ones that show no sphere, and returns how opaque each pixel is; nothing if all are

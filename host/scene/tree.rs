@@ -33,6 +33,10 @@ const HALVING_DEPTH: usize = Node::MAX_DEPTH - 12;
 /// squares and rays on a GPU have thresholds of their own.
 pub const MIN_SPHERES: usize = 12;
 
+/// What a sphere takes at most while a tree is grown and a world is sorted by it: two items, its shares of the nodes of a thread and of the
+/// whole, and its copy.
+pub const BYTES_A_SPHERE: u64 = 256;
+
 /// Whether a tree is grown.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Acceleration {

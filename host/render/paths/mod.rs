@@ -19,7 +19,7 @@ use std::time::Instant;
 use rayon::prelude::*;
 use spherule_kernel::{Accumulator, Effects, Hit, Pixel, Shading};
 
-use super::{Progress, Rendered, Settings, Timings};
+use super::{Progress, Rendered, Settings, Timings, memory_for};
 use crate::device::Device;
 use crate::error::Result;
 use crate::film::Image;
@@ -84,6 +84,8 @@ pub fn render(
 ) -> Result<Rendered> {
     let started = Instant::now();
     let pixels = u64::from(scene.width) * u64::from(scene.height);
+    // Sums, and opacities beside them.
+    memory_for(scene, (size_of::<Accumulator>() + size_of::<f32>()) as u64)?;
     let prepared = Prepared::new(scene, settings.effects, settings.acceleration)?;
     let setup = started.elapsed();
     // Had before the work, which is not to be done in vain.

@@ -1,0 +1,121 @@
+//! The end of the command where memory runs out and nothing is left to be done about it.
+//!
+//! What grows with a scene or an image is asked for in ways that can fail (`host/memory.rs`). All else is small, and Rust ends the process by
+//! SIGABRT where it cannot be had, and so do graphics drivers. [`Allocator`] notes what was refused, and what catches the signal says
+//! so and ends the command with 1.
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// The system's allocator, which notes what it was last refused.
+pub struct Allocator;
+
+/// In bytes; 0 for nothing yet.
+static REFUSED: AtomicUsize = AtomicUsize::new(0);
+
+fn noted(memory: *mut u8, bytes: usize) -> *mut u8 {
+    if memory.is_null() {
+        REFUSED.store(bytes, Ordering::Relaxed);
+    }
+    memory
+}
+
+// SAFETY: all of it is the system's allocator.
+unsafe impl GlobalAlloc for Allocator {
+    #[inline]
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        // SAFETY: whoever calls this promises what `System` asks for.
+        noted(unsafe { System.alloc(layout) }, layout.size())
+    }
+
+    #[inline]
+    unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
+        // SAFETY: as above.
+        noted(unsafe { System.alloc_zeroed(layout) }, layout.size())
+    }
+
+    #[inline]
+    unsafe fn realloc(&self, memory: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        // SAFETY: as above.
+        noted(unsafe { System.realloc(memory, layout, size) }, size)
+    }
+
+    #[inline]
+    unsafe fn dealloc(&self, memory: *mut u8, layout: Layout) {
+        // SAFETY: as above.
+        unsafe { System.dealloc(memory, layout) }
+    }
+}
+
+/// Catches SIGABRT from now on, and is sparing with memory that is limited.
+#[cfg(unix)]
+pub(super) fn install() {
+    // Whether a limit is set does not change; a handler may not look.
+    let is_limited = crate::memory::limit().is_some();
+    // glibc sets 64 MiB of addresses aside for each thread.
+    #[cfg(all(target_os = "linux", target_env = "gnu"))]
+    if is_limited {
+        // SAFETY: it is called before there is another thread.
+        unsafe { libc::mallopt(libc::M_ARENA_MAX, 1) };
+    }
+    // SAFETY: the handler reads an atomic, writes to a file descriptor and ends the process; none of these allocates or locks.
+    let _ = unsafe {
+        signal_hook::low_level::register(signal_hook::consts::SIGABRT, move || {
+            on_abort(is_limited);
+        })
+    };
+}
+
+#[cfg(not(unix))]
+pub(super) fn install() {}
+
+#[cfg(unix)]
+fn on_abort(is_limited: bool) {
+    const HELP: &[u8] =
+        b"  help: render a smaller image or fewer spheres, or give the process more memory \
+        (`ulimit -v` shows its limit)\n";
+    let refused = REFUSED.load(Ordering::Relaxed);
+    let write = |text: &[u8]| {
+        // SAFETY: the pointer and the length are those of a slice.
+        let _ = unsafe { libc::write(libc::STDERR_FILENO, text.as_ptr().cast(), text.len()) };
+    };
+    if refused > 0 {
+        write(b"  \xc3\x97 out of memory: there were not ");
+        let mut digits = [0; 20];
+        write(decimal(refused, &mut digits));
+        write(b" bytes more\n");
+    } else if is_limited {
+        write(b"  \xc3\x97 out of memory, as it seems: a part of the program gave up, and its memory is limited\n");
+    } else {
+        // A mistake of somebody's: the process ends as it would.
+        return;
+    }
+    write(HELP);
+    signal_hook::low_level::exit(1);
+}
+
+/// The decimal digits of a number.
+#[cfg(unix)]
+fn decimal(mut number: usize, digits: &mut [u8; 20]) -> &[u8] {
+    let mut first = digits.len();
+    loop {
+        first -= 1;
+        digits[first] = b'0' + (number % 10) as u8;
+        number /= 10;
+        if number == 0 {
+            return &digits[first..];
+        }
+    }
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::decimal;
+
+    #[test]
+    fn numbers_are_written_without_allocating() {
+        for number in [0, 7, 10, 1_234_567, usize::MAX] {
+            assert_eq!(decimal(number, &mut [0; 20]), number.to_string().as_bytes());
+        }
+    }
+}

@@ -1,0 +1,133 @@
+//! Little memory and few threads: a command that cannot do its work says why, and loses nothing.
+
+#![cfg(unix)]
+
+mod common;
+
+use std::fmt::Write as _;
+use std::process::{Command, Output};
+
+/// Runs `spherule` by a shell that sets limits first.
+fn spherule(limits: &str, environment: &[(&str, &str)], arguments: &str) -> (Option<i32>, String) {
+    let command = env!("CARGO_BIN_EXE_spherule");
+    let Output { status, stderr, .. } = Command::new("bash")
+        .args(["-c", &format!("{limits}; exec {command} {arguments}")])
+        .envs(environment.iter().copied())
+        .env_remove("RUST_BACKTRACE")
+        .output()
+        .expect("bash runs");
+    let stderr = String::from_utf8_lossy(&stderr).into_owned();
+    (status.code(), stderr)
+}
+
+fn two_spheres(folder: &tempfile::TempDir) -> String {
+    let output = folder.path().join("out.png");
+    format!(
+        "render scenes/two-spheres.toml --device cpu -o {}",
+        output.display()
+    )
+}
+
+#[test]
+fn what_is_needed_is_said_before_the_work() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let arguments = two_spheres(&folder) + " --size 65536x65536";
+    let (code, stderr) = spherule("ulimit -v 4000000", &[], &arguments);
+    assert_eq!(code, Some(1), "{stderr}");
+    assert!(
+        stderr.contains("out of memory: an image of 65536 × 65536 pixels"),
+        "{stderr}"
+    );
+    // 16 bytes a pixel, and a little.
+    assert!(stderr.contains("64.0 GiB (687"), "{stderr}");
+    assert!(
+        stderr.contains("ulimit -v") && !stderr.contains("--device cpu`"),
+        "{stderr}"
+    );
+}
+
+#[test]
+fn what_cannot_be_had_while_reading_is_no_abort() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let scene = folder.path().join("many.toml");
+    let mut text = String::new();
+    for index in 0..100_000 {
+        writeln!(text, "[[sphere]]\ncenter = [{index}, 0, 0]\nradius = 0.4").expect("text");
+    }
+    std::fs::write(&scene, text).expect("a file");
+    let output = folder.path().join("out.png");
+    std::fs::write(&output, "before").expect("a file");
+    let arguments = format!(
+        "render {} --device cpu --size 16x9 -o {}",
+        scene.display(),
+        output.display()
+    );
+    let (code, stderr) = spherule("ulimit -v 60000", &[], &arguments);
+    if code == Some(0) {
+        // Readers may come to need less.
+        return;
+    }
+    assert_eq!(code, Some(1), "{stderr}");
+    assert!(
+        stderr.contains("out of memory") && stderr.contains("help: "),
+        "{stderr}"
+    );
+    assert_eq!(std::fs::read(&output).expect("a file"), b"before");
+}
+
+#[test]
+fn a_bad_number_of_threads_is_refused() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for bad in ["abc", "-3", "1.5", "99999999999999999999999"] {
+        let threads = [("RAYON_NUM_THREADS", bad)];
+        let (code, stderr) = spherule("true", &threads, &two_spheres(&folder));
+        assert_eq!(code, Some(2), "{stderr}");
+        assert!(
+            stderr.contains(bad) && stderr.contains("help: "),
+            "{stderr}"
+        );
+    }
+}
+
+#[test]
+fn many_threads_are_capped_and_few_will_do() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let arguments = two_spheres(&folder);
+    let processors = std::thread::available_parallelism().map_or(1, usize::from);
+    let most = (4 * processors).max(64);
+
+    let many = [("RAYON_NUM_THREADS", "5000")];
+    let (code, stderr) = spherule("true", &many, &arguments);
+    assert_eq!(code, Some(0), "{stderr}");
+    assert!(
+        stderr.contains(&format!("{most} threads instead of 5000")),
+        "{stderr}"
+    );
+
+    let some = [("RAYON_NUM_THREADS", "60")];
+    let (code, stderr) = spherule("ulimit -v 100000", &some, &arguments);
+    assert_eq!(code, Some(0), "{stderr}");
+    assert!(
+        stderr.contains(" instead of 60") && stderr.contains("ulimit -v"),
+        "{stderr}"
+    );
+
+    let one = [("RAYON_NUM_THREADS", "1")];
+    let (code, stderr) = spherule("true", &one, &arguments);
+    assert_eq!(code, Some(0), "{stderr}");
+    assert!(stderr.contains("CPU, 1 thread "), "{stderr}");
+}
+
+/// A few of its steps; `tests/memory_sweep` alone takes forty.
+#[test]
+fn a_sweep_of_limits_ends_in_pictures_or_sentences() {
+    let test = "a_sweep_of_limits_ends_in_pictures_or_sentences";
+    common::skips(test);
+    let sweep = Command::new("tests/memory_sweep")
+        .arg("3")
+        .env("SPHERULE", env!("CARGO_BIN_EXE_spherule"))
+        .output()
+        .expect("bash runs");
+    let said = String::from_utf8_lossy(&sweep.stdout);
+    assert!(sweep.status.success(), "{said}");
+}
