@@ -156,21 +156,34 @@ fn bands<const SHADING: u32, const RUNG: u32>(
                     nodes.tree(),
                     &world.spheres,
                 );
-                for (y, row) in pixels.chunks_mut(width).enumerate() {
-                    for (x, pixel) in row[left..].iter_mut().take(SIDE).enumerate() {
-                        let (ray, hit) = packet.hit(SIDE * y + x);
-                        *pixel = launch.pixel(
-                            SHADING,
-                            &ray,
-                            hit,
-                            &world.spheres,
-                            &world.material_ids,
-                            &world.materials,
-                            launch.unless_hit(pixel),
-                        );
-                    }
-                }
+                shade::<SHADING>(pixels, (width, left), &packet, launch, world);
             }
             goes_on((width - since) * rows);
         });
+}
+
+/// Writes what a square has hit to the rows of an image, `width` pixels wide, from its pixel `left` on. A function of its own, because what
+/// is asked between squares takes registers.
+#[inline(never)]
+fn shade<const SHADING: u32>(
+    pixels: &mut [Pixel],
+    (width, left): (usize, usize),
+    packet: &Packet,
+    launch: &Launch,
+    world: &World,
+) {
+    for (y, row) in pixels.chunks_mut(width).enumerate() {
+        for (x, pixel) in row[left..].iter_mut().take(SIDE).enumerate() {
+            let (ray, hit) = packet.hit(SIDE * y + x);
+            *pixel = launch.pixel(
+                SHADING,
+                &ray,
+                hit,
+                &world.spheres,
+                &world.material_ids,
+                &world.materials,
+                launch.unless_hit(pixel),
+            );
+        }
+    }
 }
