@@ -137,9 +137,15 @@ pub fn instance() -> wgpu::Instance {
     })
 }
 
-/// Every adapter of this system, the preferred ones first.
+/// What loading drivers takes of a limited memory, in bytes: with less, lavapipe (Mesa 22.3) may read through pointers that it was not given.
+const FOR_DRIVERS: u64 = 480 << 20;
+
+/// Every adapter of this system, the preferred ones first; none where memory is limited (`ulimit -v`) to less than drivers take.
 #[must_use]
 pub fn adapters(instance: &wgpu::Instance) -> Vec<wgpu::Adapter> {
+    if memory::limit().is_some() && memory::check(FOR_DRIVERS, "loading drivers").is_err() {
+        return Vec::new();
+    }
     let mut adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::all()));
     adapters.sort_by_key(|adapter| rank(&adapter.get_info()));
     for adapter in &adapters {
