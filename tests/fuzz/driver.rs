@@ -1,0 +1,210 @@
+//! What every fuzz target shares: the committed corpus is run as it is, and then mutated until the time is over.
+//!
+//! `SPHERULE_FUZZ_SECONDS` is that time for each target, 2 s if it is not set; `SPHERULE_FUZZ_SEED` is another run for each number.
+//! An input with an outcome that none had before joins the corpus for the rest of the run, which stands in for a compiler that
+//! counts branches. One that fails a target is written to a file that the panic names: put it into the corpus with its mend.
+
+use std::collections::HashSet;
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+use std::time::{Duration, Instant};
+
+use spherule::accuracy::random::Random;
+
+/// An input that takes longer hangs. They are small, and take milliseconds.
+const HANGS: Duration = Duration::from_secs(20);
+/// The most inputs that a run keeps.
+const MOST: usize = 2000;
+/// The largest input that mutations make.
+const LARGEST: usize = 1 << 16;
+
+/// Bytes that inputs are made of.
+pub struct Words {
+    /// What is put in.
+    pub words: &'static [&'static [u8]],
+    /// Whether inputs are text, of lines and numbers.
+    pub is_text: bool,
+}
+
+/// Runs a target on its corpus and on what becomes of that. `target` says what kind of outcome an input has.
+pub fn fuzz(name: &str, words: &Words, target: impl Fn(&[u8]) -> String) {
+    let number = |variable, otherwise| {
+        let value = std::env::var(variable).ok();
+        value
+            .and_then(|value| value.parse().ok())
+            .unwrap_or(otherwise)
+    };
+    let time = Duration::from_secs(number("SPHERULE_FUZZ_SECONDS", 2));
+    let mut random = Random::new(number("SPHERULE_FUZZ_SEED", 1));
+    let mut corpus = committed(name);
+    assert!(!corpus.is_empty(), "tests/fuzz/corpus/{name} is empty");
+    let now: Mutex<Option<(Instant, Vec<u8>)>> = Mutex::new(None);
+    let mut seen = HashSet::new();
+    let (mut runs, mut found) = (0_u64, 0);
+    std::thread::scope(|scope| {
+        let (over, wait) = std::sync::mpsc::channel::<()>();
+        let watched = &now;
+        scope.spawn(move || {
+            while wait.recv_timeout(Duration::from_millis(500))
+                == Err(std::sync::mpsc::RecvTimeoutError::Timeout)
+            {
+                let now = watched
+                    .lock()
+                    .expect("not poisoned: targets run without it");
+                if let Some((started, input)) = &*now
+                    && Instant::elapsed(started) > HANGS
+                {
+                    eprintln!("{name} hangs: {}", save(name, input).display());
+                    std::process::exit(1);
+                }
+            }
+        });
+        let mut run = |input: &[u8]| {
+            *now.lock().expect("not poisoned: targets run without it") =
+                Some((Instant::now(), input.to_vec()));
+            let outcome = catch_unwind(AssertUnwindSafe(|| target(input)));
+            *now.lock().expect("not poisoned: targets run without it") = None;
+            runs += 1;
+            match outcome {
+                Ok(outcome) => seen.insert(kind(&outcome)),
+                Err(panic) => {
+                    eprintln!("{name} fails: {}", save(name, input).display());
+                    resume_unwind(panic)
+                }
+            }
+        };
+        for input in &corpus {
+            run(input);
+        }
+        let started = Instant::now();
+        while started.elapsed() < time {
+            let input = mutate(&mut random, &corpus, words);
+            if run(&input) {
+                found += 1;
+                if corpus.len() < MOST {
+                    corpus.push(input);
+                }
+            }
+        }
+        drop(over);
+    });
+    println!("{name}: {runs} inputs, {found} of new outcomes");
+}
+
+fn committed(name: &str) -> Vec<Vec<u8>> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("tests/fuzz/corpus")
+        .join(name);
+    let mut paths: Vec<PathBuf> = std::fs::read_dir(&folder)
+        .unwrap_or_else(|error| panic!("{}: {error}", folder.display()))
+        .filter_map(|entry| Some(entry.ok()?.path()))
+        .collect();
+    // Runs are alike on every machine.
+    paths.sort();
+    paths
+        .iter()
+        .filter_map(|path| std::fs::read(path).ok())
+        .collect()
+}
+
+/// Keeps an input that fails.
+fn save(name: &str, input: &[u8]) -> PathBuf {
+    let hash = input.iter().fold(0xcbf2_9ce4_8422_2325, |hash: u64, byte| {
+        (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3)
+    });
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("fuzz");
+    let path = folder.join(format!("{name}-{hash:016x}"));
+    let _ = std::fs::create_dir_all(folder);
+    let _ = std::fs::write(&path, input);
+    path
+}
+
+/// What kind of outcome it is: neither numbers nor what is quoted of the input count.
+fn kind(outcome: &str) -> String {
+    let told = outcome.split(['"', '`', '\'']).step_by(2);
+    let kind: String = told
+        .flat_map(str::chars)
+        .filter(|c| c.is_ascii_lowercase())
+        .collect();
+    kind[..kind.len().min(30)].into()
+}
+
+fn below(random: &mut Random, end: usize) -> usize {
+    random.next_u32() as usize % end.max(1)
+}
+
+/// A part of an input.
+fn part(random: &mut Random, bytes: &[u8], words: &Words) -> std::ops::Range<usize> {
+    let at = below(random, bytes.len() + 1);
+    if words.is_text && below(random, 4) > 0 {
+        let wants_line = below(random, 3) == 0;
+        let is_in = |byte: &u8| {
+            if wants_line {
+                *byte != b'\n'
+            } else {
+                byte.is_ascii_alphanumeric() || b"._-+".contains(byte)
+            }
+        };
+        let before = bytes[..at]
+            .iter()
+            .rev()
+            .take_while(|byte| is_in(byte))
+            .count();
+        let behind = bytes[at..].iter().take_while(|byte| is_in(byte)).count();
+        // With the end of the line.
+        let end = (at + behind + usize::from(wants_line)).min(bytes.len());
+        return at - before..end;
+    }
+    let longest = [1, 4, 16, 200][below(random, 4)];
+    at..(at + below(random, longest + 1)).min(bytes.len())
+}
+
+/// One input of the corpus with some changes.
+fn mutate(random: &mut Random, corpus: &[Vec<u8>], words: &Words) -> Vec<u8> {
+    let mut bytes = corpus[below(random, corpus.len())].clone();
+    let most = [1, 3, 12][below(random, 3)];
+    let changes = 1 + below(random, most);
+    for _ in 0..changes {
+        let here = part(random, &bytes, words);
+        match below(random, 9) {
+            0 if !bytes.is_empty() => {
+                let at = below(random, bytes.len());
+                bytes[at] ^= 1 << below(random, 8);
+            }
+            1 if !bytes.is_empty() => {
+                let at = below(random, bytes.len());
+                bytes[at] = random.next_u32() as u8;
+            }
+            // Beginnings say the most.
+            2 if !bytes.is_empty() => {
+                let at = below(random, bytes.len().min(64));
+                bytes[at] = random.next_u32() as u8;
+            }
+            3 => drop(bytes.drain(here)),
+            4 => {
+                let copy = bytes[here.clone()].to_vec();
+                let at = below(random, bytes.len() + 1);
+                bytes.splice(at..at, copy);
+            }
+            5 => {
+                let other = &corpus[below(random, corpus.len())];
+                let there = part(random, other, words);
+                bytes.splice(here, other[there].to_vec());
+            }
+            6 if below(random, 8) == 0 => bytes.truncate(here.start),
+            _ => {
+                let word = words.words[below(random, words.words.len())];
+                // In binary files what has a place keeps it.
+                let end = if words.is_text {
+                    here.end
+                } else {
+                    (here.start + word.len()).min(bytes.len())
+                };
+                bytes.splice(here.start..end, word.to_vec());
+            }
+        }
+    }
+    bytes.truncate(LARGEST);
+    bytes
+}
