@@ -1,0 +1,909 @@
+//! Writes `src/calls.rs`: a call of each public function of spherule and of its kernel, as rustdoc's JSON has them.
+//!
+//!     generate spherule_kernel.json spherule.json > src/calls.rs
+//!
+//! A function whose arguments nothing is known to make fails it, unless [`LEFT_OUT`] says why it is not called. So does
+//! an entry of a table here that no function needs any more.
+
+use std::cell::RefCell;
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::error::Error;
+use std::fmt::Write as _;
+
+use rustdoc_types::{
+    Attribute, Crate, Function, GenericArg, GenericArgs, GenericBound, Generics, Id, Impl, Item,
+    ItemEnum, StructKind, Type, VariantKind, Visibility, WherePredicate,
+};
+
+/// Functions that are not called, and why.
+const LEFT_OUT: &[(&str, &str)] = &[
+    (
+        "spherule::cli::main",
+        "takes the process' command line: tests/command_line.rs",
+    ),
+    (
+        "spherule::device::adapter::adapters",
+        "takes wgpu's own types: list_adapters is called",
+    ),
+    (
+        "spherule::device::gpu::Gpu::from_adapter",
+        "takes wgpu's own types: tests/gpu_errors.rs",
+    ),
+    (
+        "spherule::device::gpu::Gpu::destroy",
+        "takes the GPU from the calls that follow: tests/gpu_errors.rs",
+    ),
+    (
+        "spherule::device::gpu::Gpu::launch",
+        "runs for as long as a kernel says: tests/gpu_errors.rs",
+    ),
+];
+
+/// Whole calls, where a generic argument has to be chosen, or arguments have to fit or borrow one another.
+const WRITTEN: &[(&str, &[&str])] = &[
+    (
+        "spherule_kernel::arithmetic::distill::distill",
+        &[
+            "distill(&mut s.draw::<[f32; 1]>())",
+            "distill(&mut s.draw::<[f32; 2]>())",
+            "distill(&mut s.draw::<[f32; 9]>())",
+        ],
+    ),
+    (
+        "spherule_kernel::arithmetic::elements::get",
+        &["get(&s.draw::<[u32; 5]>(), s.draw())"],
+    ),
+    (
+        "spherule_kernel::arithmetic::elements::set",
+        &["set(&mut s.draw::<[u32; 5]>(), s.draw(), s.draw())"],
+    ),
+    (
+        "spherule_kernel::arithmetic::elements::read",
+        &["read::<u32>(&s.many()[..], s.draw())"],
+    ),
+    (
+        "spherule::accuracy::cases::Case::samples",
+        &["samples(&s.draw()).count()"],
+    ),
+    (
+        "spherule::accuracy::report::page",
+        &[
+            "page(&s.text(), s.draw(), &s.draw::<odd::OddFamilies>().get(), Some((&s.text(), &s.many()[..])), &s.many()[..], &s.text())",
+        ],
+    ),
+    (
+        "spherule::device::gpu::Gpu::upload",
+        &["upload::<u32>(s.gpu(), &s.text(), &s.many()[..])"],
+    ),
+    (
+        "spherule::device::gpu::Gpu::upload_uniform",
+        &["upload_uniform::<u32>(s.gpu(), &s.text(), &s.draw())"],
+    ),
+    (
+        "spherule::device::gpu::Gpu::update",
+        &["update::<u32>(s.gpu(), &s.draw(), &s.draw())"],
+    ),
+    (
+        "spherule::device::gpu::Gpu::zeroed",
+        &["zeroed::<u32>(s.gpu(), &s.text(), s.few())"],
+    ),
+    (
+        "spherule::device::gpu::Gpu::clear",
+        &["clear::<u32>(s.gpu(), &s.draw())"],
+    ),
+    (
+        "spherule::device::gpu::Gpu::read",
+        &["read::<u32>(s.gpu(), &s.draw())"],
+    ),
+    (
+        "spherule::device::gpu::Gpu::read_first",
+        &["read_first::<u32>(s.gpu(), &s.draw(), s.draw())"],
+    ),
+    (
+        "spherule::film::allocate",
+        &["allocate::<f32>(s.side(), s.side())"],
+    ),
+    (
+        "spherule::render::fit::fit",
+        &["fit(&mut s.draw(), s.draw(), |_| Ok(s.draw()))"],
+    ),
+    (
+        "spherule::render::packet::trace",
+        &[
+            "trace::<0>(&mut s.draw(), &s.launch(), &s.draw(), s.draw(), s.draw::<odd::OddTree>().get(), &s.many()[..])",
+            "trace::<1>(&mut s.draw(), &s.launch(), &s.draw(), s.draw(), s.draw::<odd::OddTree>().get(), &s.many()[..])",
+            "trace::<4>(&mut s.draw(), &s.launch(), &s.draw(), s.draw(), s.draw::<odd::OddTree>().get(), &s.many()[..])",
+        ],
+    ),
+    (
+        "spherule::scene::tree::Tree::sort",
+        &["sort(&s.draw(), &s.many::<u32>()[..])"],
+    ),
+];
+
+/// Expressions for arguments, by the function and the argument's name.
+const ARGUMENTS: &[(&str, &str, &str)] = &[
+    ("spherule::bench::export::export", "folder", "&s.folder()"),
+    ("spherule::render::cpu::render", "launch", "&s.launch()"),
+    ("spherule::render::cpu::render_to", "launch", "&s.launch()"),
+    ("spherule::render::gpu::render", "launch", "&s.launch()"),
+    (
+        "spherule::render::gpu::render_paced",
+        "launch",
+        "&s.launch()",
+    ),
+    ("spherule::render::gpu::time", "launch", "&s.launch()"),
+    (
+        "spherule::render::packet::Frusta::of",
+        "launch",
+        "&s.launch()",
+    ),
+    (
+        "spherule::scene::molecule::pdb::parse",
+        "text",
+        "&s.file(\"pdb\")",
+    ),
+    (
+        "spherule::scene::molecule::xyz::parse",
+        "text",
+        "&s.file(\"xyz\")",
+    ),
+    (
+        "spherule::scene::toml_file::parse",
+        "text",
+        "s.file(\"toml\")",
+    ),
+    (
+        "spherule::device::spirv::Module::from_bytes",
+        "bytes",
+        "&s.module()[..]",
+    ),
+];
+
+/// Arguments that say how much is to be done, by their names: they are small.
+const WORK: &[&str] = &["bounces", "count", "height", "most", "rounds", "width"];
+
+/// Functions that take long whatever they are told: at most so many calls, and the seconds that one may take.
+const FEW: &[(&str, u64, u64)] = &[
+    // Measures the machine.
+    ("spherule::bench::limit::Limit::of", 2, 20),
+    // Compile the largest kernel, on an adapter in software for ten seconds.
+    ("spherule::render::paths::gpu::compile", 2, 120),
+    ("spherule::render::paths::gpu::render", 2, 120),
+];
+
+/// Types that `src/odd.rs` makes.
+const BY_HAND: &[&str] = &[
+    "spherule::accuracy::cases::Case",
+    "spherule::accuracy::oracle::Intersection",
+    "spherule::accuracy::random::Random",
+    "spherule::accuracy::scene_cases::SceneCase",
+    "spherule::bench::measure::Plan",
+    "spherule::bench::scenes::BenchScene",
+    "spherule::device::buffer::Buffer",
+    "spherule::device::spirv::Module",
+    "spherule::film::Image",
+    "spherule::render::gpu::Prepared",
+    "spherule::render::pace::Pace",
+    "spherule::render::packet::Packet",
+    "spherule::render::paths::prepare::Prepared",
+    "spherule::scene::Scene",
+    "spherule::scene::tree::Nodes",
+    "spherule::scene::tree::Tree",
+    "spherule::scene::world::World",
+    "spherule::trace::cpu::CpuTracer",
+    "spherule::trace::gpu::Batch",
+    "spherule::trace::gpu::GpuTracer",
+    "spherule_kernel::camera::Camera",
+    "spherule_kernel::cone::Cone",
+    "spherule_kernel::cone::Sight",
+    "spherule_kernel::effects::Effects",
+    "spherule_kernel::film::Accumulator",
+    "spherule_kernel::film::Pixel",
+    "spherule_kernel::frustum::Frustum",
+    "spherule_kernel::frustum::Plane",
+    "spherule_kernel::material::Material",
+    "spherule_kernel::microfacet::RoughMetal",
+    "spherule_kernel::random::Sampler",
+    "spherule_kernel::sphere::Sphere",
+];
+
+/// Types that `src/odd.rs` needs, and no argument.
+const ALSO: &[&str] = &[
+    "spherule::accuracy::frames::Frame",
+    "spherule::accuracy::measure::Measured",
+    "spherule::accuracy::price::Price",
+    "spherule::accuracy::samples::Step",
+    "spherule_kernel::film::PathLaunch",
+    "spherule_kernel::light::Light",
+];
+
+/// Types that borrow: what owns the parts of one, in `src/odd.rs`.
+const OWNED: &[(&str, &str)] = &[
+    ("spherule::render::cpu::Prepared", "OddPrepared"),
+    ("spherule_kernel::integrate::Scenery", "OddScenery"),
+    (
+        "spherule_kernel::nearest::MovingSpheres",
+        "OddMovingSpheres",
+    ),
+    ("spherule_kernel::traversal::OneByOne", "OddOneByOne"),
+    ("spherule_kernel::tree::Tree", "OddTree"),
+];
+
+/// Types that are given as they are.
+const GIVEN: &[(&str, &str)] = &[
+    ("spherule::device::Device", "&spherule::Device::Cpu"),
+    ("spherule::device::gpu::Gpu", "s.gpu()"),
+    ("spherule::device::gpu::Kernel", "s.kernel()"),
+    ("spherule::render::Progress", "spherule::render::QUIET"),
+];
+
+/// Types of others that `src/odd.rs` makes.
+const FOREIGN: &[&str] = &[
+    "Box", "Duration", "Element", "Option", "PathBuf", "Range", "String", "UVec2", "UVec3",
+    "UVec4", "Vec", "Vec2", "Vec3", "Vec4",
+];
+
+type Result<T> = std::result::Result<T, Box<dyn Error>>;
+
+fn main() -> Result<()> {
+    let mut crates = Vec::new();
+    for path in std::env::args().skip(1) {
+        let text = std::fs::read_to_string(&path).map_err(|error| format!("{path}: {error}"))?;
+        crates.push(serde_json::from_str(&text)?);
+    }
+    let mut generator = Generator::default();
+    for krate in &crates {
+        generator.module(krate, krate.root, &[]);
+    }
+    print!("{}", generator.finish()?);
+    Ok(())
+}
+
+#[derive(Default)]
+struct Generator<'a> {
+    /// Public types by where they are defined: the path to them, and what they are.
+    types: HashMap<String, (String, &'a Crate, &'a Item)>,
+    seen: BTreeSet<(String, Id)>,
+    /// Where each is defined, the path to it, and of a method its type.
+    functions: Vec<(String, String, &'a Crate, &'a Item, Option<String>)>,
+    impls: Vec<(String, &'a Crate, &'a Impl)>,
+    traits: Vec<(String, &'a Crate, &'a Item)>,
+    /// What of the tables was needed.
+    used: RefCell<BTreeSet<String>>,
+}
+
+impl<'a> Generator<'a> {
+    /// Finds what is public.
+    fn module(&mut self, krate: &'a Crate, id: Id, path: &[&str]) {
+        let Some(item) = krate.index.get(&id) else {
+            return;
+        };
+        let name = item.name.as_deref().unwrap_or_default();
+        let mut own = path.to_vec();
+        own.push(name);
+        let own_path = own.join("::");
+        if let ItemEnum::Use(used) = &item.inner {
+            if let (Some(id), Visibility::Public) = (used.id, &item.visibility) {
+                self.module(krate, id, path);
+            }
+            return;
+        }
+        if item.visibility != Visibility::Public || !self.seen.insert((krate_name(krate), id)) {
+            return;
+        }
+        match &item.inner {
+            ItemEnum::Module(module) => {
+                for id in &module.items {
+                    self.module(krate, *id, &own);
+                }
+            }
+            ItemEnum::Function(_) => {
+                self.functions
+                    .push((own_path.clone(), own_path, krate, item, None));
+            }
+            ItemEnum::Struct(it) => self.of_type(krate, item, own_path, &it.impls),
+            ItemEnum::Enum(it) => self.of_type(krate, item, own_path, &it.impls),
+            ItemEnum::Union(it) => self.of_type(krate, item, own_path, &it.impls),
+            ItemEnum::Trait(_) => self.traits.push((own_path, krate, item)),
+            _ => {}
+        }
+    }
+
+    fn of_type(&mut self, krate: &'a Crate, item: &'a Item, path: String, impls: &'a [Id]) {
+        let defined = definition(krate, item.id);
+        self.types
+            .insert(defined.clone(), (path.clone(), krate, item));
+        for id in impls {
+            let Some(Item {
+                inner: ItemEnum::Impl(it),
+                attrs,
+                ..
+            }) = krate.index.get(id)
+            else {
+                continue;
+            };
+            if it.is_synthetic || it.blanket_impl.is_some() {
+                continue;
+            }
+            if it.trait_.is_none() {
+                for id in &it.items {
+                    let method = &krate.index[id];
+                    if method.visibility == Visibility::Public
+                        && matches!(method.inner, ItemEnum::Function(_))
+                    {
+                        let name = method.name.as_deref().unwrap_or_default();
+                        self.functions.push((
+                            format!("{defined}::{name}"),
+                            format!("{path}::{name}"),
+                            krate,
+                            method,
+                            Some(defined.clone()),
+                        ));
+                    }
+                }
+            } else if !attrs.contains(&Attribute::AutomaticallyDerived) {
+                self.impls.push((defined.clone(), krate, it));
+            }
+        }
+    }
+
+    fn finish(self) -> Result<String> {
+        let mut needed = BTreeSet::new();
+        let mut calls: BTreeMap<String, Vec<String>> = BTreeMap::new();
+        let mut mistakes = Vec::new();
+        for (defined, path, krate, item, of) in &self.functions {
+            // Where a function is defined says which it is; how it is called is another matter.
+            let defined = if of.is_some() {
+                defined.clone()
+            } else {
+                definition(krate, item.id)
+            };
+            let ItemEnum::Function(function) = &item.inner else {
+                continue;
+            };
+            if function.header.is_unsafe
+                || self.is_in(LEFT_OUT.iter().map(|(name, _)| *name), &defined)
+            {
+                continue;
+            }
+            if let Some((_, written)) = WRITTEN.iter().find(|(name, _)| *name == defined) {
+                self.used.borrow_mut().insert(defined.clone());
+                let parent = path.rsplit_once("::").map_or("", |(parent, _)| parent);
+                let written = written.iter().map(|call| format!("{parent}::{call}"));
+                calls.insert(defined, written.collect());
+                continue;
+            }
+            match self.call(krate, &defined, path, function, of.as_deref(), &mut needed) {
+                Ok(call) => {
+                    calls.insert(defined, call);
+                }
+                Err(error) => mistakes.push(format!("{defined}: {error}")),
+            }
+        }
+        for (defined, krate, it) in &self.impls {
+            if let Err(error) = self.trait_calls(krate, defined, it, &mut needed, &mut calls) {
+                mistakes.push(format!("{defined}: {error}"));
+            }
+        }
+        for (path, krate, item) in &self.traits {
+            if let Err(error) = self.impls_of(path, krate, item, &mut needed, &mut calls) {
+                mistakes.push(format!("{path}: {error}"));
+            }
+        }
+        needed.extend(ALSO.iter().map(|name| (*name).to_string()));
+        let few = FEW
+            .iter()
+            .map(|row| row.0)
+            .filter(|name| calls.contains_key(*name));
+        self.used.borrow_mut().extend(few.map(String::from));
+        let odd = self.odd_types(needed, &mut mistakes);
+        let used = self.used.borrow();
+        let tables = (LEFT_OUT.iter().map(|row| row.0))
+            .chain(WRITTEN.iter().map(|row| row.0))
+            .chain(ARGUMENTS.iter().map(|row| row.0))
+            .chain(FEW.iter().map(|row| row.0))
+            .chain(BY_HAND.iter().copied())
+            .chain(OWNED.iter().map(|row| row.0));
+        for name in tables {
+            if !used.contains(name) {
+                mistakes.push(format!(
+                    "{name}: in a table of the generator, but not needed"
+                ));
+            }
+        }
+        if !mistakes.is_empty() {
+            return Err(format!(
+                "say in tests/every-function/src/bin/generate.rs how these are called, or why they are not:\n{}",
+                mistakes.join("\n")
+            )
+            .into());
+        }
+        Ok(write(&calls, &odd))
+    }
+
+    fn is_in(&self, mut names: impl Iterator<Item = &'static str>, name: &str) -> bool {
+        let found = names.any(|one| one == name);
+        if found {
+            self.used.borrow_mut().insert(name.into());
+        }
+        found
+    }
+
+    /// The calls of a function.
+    fn call(
+        &self,
+        krate: &Crate,
+        defined: &str,
+        path: &str,
+        function: &Function,
+        of: Option<&str>,
+        needed: &mut BTreeSet<String>,
+    ) -> Result<Vec<String>> {
+        let mut calls = vec![String::new()];
+        for (name, ty) in &function.sig.inputs {
+            let given = ARGUMENTS
+                .iter()
+                .find(|(function, argument, _)| *function == defined && argument == name);
+            let choices = if let Some((_, _, given)) = given {
+                self.used.borrow_mut().insert(defined.into());
+                vec![(*given).into()]
+            } else if WORK.contains(&name.as_str())
+                && matches!(ty, Type::Primitive(name) if name.starts_with('u'))
+            {
+                vec!["s.few()".into()]
+            } else {
+                self.argument(krate, ty, &function.generics, of, needed)?
+            };
+            calls = calls
+                .iter()
+                .flat_map(|call| {
+                    choices
+                        .iter()
+                        .map(move |choice| format!("{call}{choice}, "))
+                })
+                .collect();
+        }
+        Ok(calls
+            .into_iter()
+            .map(|arguments| format!("{path}({})", arguments.trim_end_matches(", ")))
+            .collect())
+    }
+
+    /// Expressions for an argument.
+    fn argument(
+        &self,
+        krate: &Crate,
+        ty: &Type,
+        generics: &Generics,
+        of: Option<&str>,
+        needed: &mut BTreeSet<String>,
+    ) -> Result<Vec<String>> {
+        let one = |expression: &str| Ok(vec![expression.to_string()]);
+        let name_of = |ty: &Type| match ty {
+            Type::ResolvedPath(path) => Some(definition(krate, path.id)),
+            Type::Generic(name) if name == "Self" => of.map(String::from),
+            _ => None,
+        };
+        let known = |ty: &Type| {
+            let name = name_of(ty)?;
+            let owned = OWNED.iter().find(|(owned, _)| *owned == name);
+            if owned.is_some() {
+                self.used.borrow_mut().insert(name.clone());
+            }
+            let given = GIVEN.iter().find(|(given, _)| *given == name);
+            given
+                .map(|(_, given)| (*given).to_string())
+                .or(owned.map(|(_, owner)| format!("s.draw::<odd::{owner}>().get()")))
+        };
+        match ty {
+            Type::BorrowedRef {
+                is_mutable, type_, ..
+            } => {
+                let mutable = if *is_mutable { "mut " } else { "" };
+                match &**type_ {
+                    Type::Slice(of_what) => {
+                        self.need(krate, of_what, needed)?;
+                        Ok(vec![format!("&{mutable}s.many()[..]")])
+                    }
+                    Type::Primitive(name) if name == "str" => one("&s.text()"),
+                    Type::ResolvedPath(path) if path.path.ends_with("Path") => one("&s.path()"),
+                    Type::Generic(name) if bounds(generics, name).contains("Spheres") => Ok(vec![
+                        "&s.many::<spherule_kernel::Sphere>()[..]".into(),
+                        "&s.draw::<odd::OddMovingSpheres>().get()".into(),
+                    ]),
+                    inner => {
+                        if let Some(known) = known(inner) {
+                            let borrow = if known.starts_with("s.draw") { "&" } else { "" };
+                            return Ok(vec![format!("{borrow}{mutable}{known}")]);
+                        }
+                        self.need_of(krate, inner, of, needed)?;
+                        Ok(vec![format!("&{mutable}s.draw()")])
+                    }
+                }
+            }
+            Type::ImplTrait(bounds) => match bounds.first() {
+                Some(GenericBound::TraitBound { trait_, .. }) if trait_.path == "AsRef" => {
+                    one("s.path()")
+                }
+                Some(GenericBound::TraitBound { trait_, .. }) if trait_.path == "Into" => {
+                    one("s.draw::<spherule::render::Settings>()")
+                }
+                _ => Err("an argument of any type with a trait that is not known here".into()),
+            },
+            Type::ResolvedPath(path) if path.path == "Option" => {
+                let inner = first_argument(path.args.as_deref());
+                if let Some(Type::BorrowedRef { type_, .. }) = inner {
+                    self.need_of(krate, type_, of, needed)?;
+                    return one("Some(&s.draw())");
+                }
+                self.need(krate, ty, needed)?;
+                one("s.draw()")
+            }
+            _ => {
+                if let Some(known) = known(ty) {
+                    return Ok(vec![known]);
+                }
+                self.need_of(krate, ty, of, needed)?;
+                one("s.draw()")
+            }
+        }
+    }
+
+    fn need_of(
+        &self,
+        krate: &Crate,
+        ty: &Type,
+        of: Option<&str>,
+        needed: &mut BTreeSet<String>,
+    ) -> Result<()> {
+        match (ty, of) {
+            (Type::Generic(name), Some(of)) if name == "Self" => {
+                needed.insert(of.into());
+                Ok(())
+            }
+            _ => self.need(krate, ty, needed),
+        }
+    }
+
+    /// Notes that a type has to be made.
+    fn need(&self, krate: &Crate, ty: &Type, needed: &mut BTreeSet<String>) -> Result<()> {
+        match ty {
+            Type::Primitive(name) if name != "never" => Ok(()),
+            Type::Array { type_, .. } | Type::Slice(type_) => self.need(krate, type_, needed),
+            Type::Tuple(types) => types.iter().try_for_each(|ty| self.need(krate, ty, needed)),
+            Type::BorrowedRef { type_, .. }
+                if matches!(&**type_, Type::Primitive(name) if name == "str")
+                    || matches!(&**type_, Type::ResolvedPath(path) if path.path.ends_with("Element")) =>
+            {
+                Ok(())
+            }
+            Type::ResolvedPath(path) => {
+                let name = path.path.rsplit("::").next().unwrap_or_default();
+                if FOREIGN.contains(&name) {
+                    return match first_argument(path.args.as_deref()) {
+                        Some(inner) => self.need(krate, inner, needed),
+                        None => Ok(()),
+                    };
+                }
+                needed.insert(definition(krate, path.id));
+                Ok(())
+            }
+            _ => Err(format!("nothing is known to make {ty:?}").into()),
+        }
+    }
+
+    /// Calls of the methods of other crates' traits that are written by hand.
+    fn trait_calls(
+        &self,
+        krate: &Crate,
+        defined: &str,
+        it: &Impl,
+        needed: &mut BTreeSet<String>,
+        calls: &mut BTreeMap<String, Vec<String>>,
+    ) -> Result<()> {
+        let Some(of) = &it.trait_ else { return Ok(()) };
+        let is_ours = definition(krate, of.id).starts_with("spherule");
+        if is_ours || it.is_unsafe || !it.items.iter().any(|id| is_function(krate, *id)) {
+            return Ok(());
+        }
+        let path = &self.types[defined].0;
+        let owner = OWNED.iter().find(|(owned, _)| *owned == defined);
+        let value = match owner {
+            Some((_, owner)) => format!("s.draw::<odd::{owner}>().get()"),
+            None => format!("s.draw::<{path}>()"),
+        };
+        let name = of.path.rsplit("::").next().unwrap_or_default();
+        let call = match name {
+            "Display" => format!("{value}.to_string()"),
+            "Debug" => format!("format!(\"{{:?}}\", {value})"),
+            "Deref" => format!("std::ops::Deref::deref(&{value})"),
+            "Error" => format!("std::error::Error::source(&{value})"),
+            "Drop" => format!("drop({value})"),
+            "Default" => format!("<{path} as Default>::default()"),
+            "FromStr" => format!("s.text().parse::<{path}>()"),
+            "From" => {
+                let from = first_argument(of.args.as_deref()).ok_or("From what?")?;
+                self.need(krate, from, needed)?;
+                format!(
+                    "<{path} as From<{}>>::from(s.draw())",
+                    self.spell(krate, from)?
+                )
+            }
+            _ => return Err(format!("a trait that is not known here: {name}").into()),
+        };
+        if !matches!(name, "Default" | "FromStr" | "From") && owner.is_none() {
+            needed.insert(defined.into());
+        }
+        calls
+            .entry(format!("{defined} as {name}"))
+            .or_default()
+            .push(call);
+        Ok(())
+    }
+
+    /// Calls of the methods of our own traits, on all that have them.
+    fn impls_of(
+        &self,
+        path: &str,
+        krate: &Crate,
+        item: &Item,
+        needed: &mut BTreeSet<String>,
+        calls: &mut BTreeMap<String, Vec<String>>,
+    ) -> Result<()> {
+        let ItemEnum::Trait(of) = &item.inner else {
+            return Ok(());
+        };
+        for id in &of.implementations {
+            let Some(Item {
+                inner: ItemEnum::Impl(it),
+                ..
+            }) = krate.index.get(id)
+            else {
+                continue;
+            };
+            let on = self.spell(krate, &it.for_)?;
+            for id in &it.items {
+                let method = &krate.index[id];
+                let (ItemEnum::Function(function), Some(name)) = (&method.inner, &method.name)
+                else {
+                    continue;
+                };
+                if function.header.is_unsafe {
+                    continue;
+                }
+                let mut function = function.clone();
+                for (name, ty) in &mut function.sig.inputs {
+                    if let (true, Type::BorrowedRef { type_, .. }) = (name == "self", ty) {
+                        **type_ = it.for_.clone();
+                    }
+                }
+                let key = format!("{on} as {path}::{name}");
+                let call = self.call(
+                    krate,
+                    &key,
+                    &format!("<{on} as {path}>::{name}"),
+                    &function,
+                    None,
+                    needed,
+                )?;
+                calls.insert(key, call);
+            }
+        }
+        Ok(())
+    }
+
+    /// A type as calls.rs spells it.
+    fn spell(&self, krate: &Crate, ty: &Type) -> Result<String> {
+        Ok(match ty {
+            Type::Primitive(name) => name.clone(),
+            Type::Slice(inner) => format!("[{}]", self.spell(krate, inner)?),
+            Type::Tuple(types) => {
+                let types: Result<Vec<_>> = types.iter().map(|ty| self.spell(krate, ty)).collect();
+                format!("({})", types?.join(", "))
+            }
+            Type::ResolvedPath(path) if path.path == "Box" => {
+                match first_argument(path.args.as_deref()) {
+                    Some(inner) => format!("Box<{}>", self.spell(krate, inner)?),
+                    None => return Err("a box of what?".into()),
+                }
+            }
+            Type::ResolvedPath(path) => {
+                let defined = definition(krate, path.id);
+                let (public, ..) = self
+                    .types
+                    .get(&defined)
+                    .ok_or(format!("{defined} is not public"))?;
+                public.clone()
+            }
+            _ => return Err(format!("no spelling for {ty:?}").into()),
+        })
+    }
+
+    /// How types whose fields are public are made, field by field, in calls.rs.
+    fn odd_types(&self, needed: BTreeSet<String>, mistakes: &mut Vec<String>) -> Vec<String> {
+        let mut written = Vec::new();
+        let mut done = BTreeSet::new();
+        let mut left: Vec<String> = needed.into_iter().collect();
+        while let Some(defined) = left.pop() {
+            if !done.insert(defined.clone()) || self.is_in(BY_HAND.iter().copied(), &defined) {
+                continue;
+            }
+            match self.odd_type(&defined) {
+                Ok((text, more)) => {
+                    written.push(text);
+                    left.extend(more);
+                }
+                Err(error) => mistakes.push(format!("{defined}: {error}")),
+            }
+        }
+        written.sort();
+        written
+    }
+
+    fn odd_type(&self, defined: &str) -> Result<(String, BTreeSet<String>)> {
+        let (path, krate, item) = self.types.get(defined).ok_or("no public type")?;
+        let mut needed = BTreeSet::new();
+        let fields = |ids: &[Id], needed: &mut BTreeSet<String>| -> Result<String> {
+            let mut text = String::new();
+            for id in ids {
+                let field = krate.index.get(id).ok_or("a private field")?;
+                let ItemEnum::StructField(ty) = &field.inner else {
+                    return Err("a field that is none".into());
+                };
+                self.need(krate, ty, needed)?;
+                let name = field.name.as_deref().unwrap_or_default();
+                write!(text, "{name}: Odd::odd(s), ")?;
+            }
+            Ok(text)
+        };
+        let body = match &item.inner {
+            ItemEnum::Struct(it) => match &it.kind {
+                StructKind::Unit => path.clone(),
+                StructKind::Plain {
+                    fields: ids,
+                    has_stripped_fields: false,
+                } => format!("{path} {{ {} }}", fields(ids, &mut needed)?),
+                _ => return Err("has private fields: make it in src/odd.rs".into()),
+            },
+            ItemEnum::Enum(it) => {
+                let mut text = format!("match s.below({}) {{", it.variants.len());
+                for (index, id) in it.variants.iter().enumerate() {
+                    let variant = &krate.index[id];
+                    let ItemEnum::Variant(kind) = &variant.inner else {
+                        return Err("a variant that is none".into());
+                    };
+                    let name = variant.name.as_deref().unwrap_or_default();
+                    let made = match &kind.kind {
+                        VariantKind::Plain => String::new(),
+                        VariantKind::Tuple(ids) => {
+                            let ids: Vec<Id> = ids.iter().flatten().copied().collect();
+                            fields(&ids, &mut needed)?;
+                            format!("({})", vec!["Odd::odd(s)"; ids.len()].join(", "))
+                        }
+                        VariantKind::Struct { fields: ids, .. } => {
+                            format!("{{ {} }}", fields(ids, &mut needed)?)
+                        }
+                    };
+                    let at = if index + 1 == it.variants.len() {
+                        "_".into()
+                    } else {
+                        index.to_string()
+                    };
+                    write!(text, "{at} => {path}::{name}{made},")?;
+                }
+                text + "}"
+            }
+            _ => return Err("neither a struct nor an enum".into()),
+        };
+        let source = if body.contains("(s)") || body.contains("s.below") {
+            "s"
+        } else {
+            "_"
+        };
+        Ok((
+            format!(
+                "impl Odd for {path} {{ fn odd({source}: &mut Source) -> Self {{ {body} }} }}\n"
+            ),
+            needed,
+        ))
+    }
+}
+
+fn krate_name(krate: &Crate) -> String {
+    krate.index[&krate.root].name.clone().unwrap_or_default()
+}
+
+/// Where something is defined.
+fn definition(krate: &Crate, id: Id) -> String {
+    krate
+        .paths
+        .get(&id)
+        .map(|summary| summary.path.join("::"))
+        .unwrap_or_default()
+}
+
+fn is_function(krate: &Crate, id: Id) -> bool {
+    krate
+        .index
+        .get(&id)
+        .is_some_and(|item| matches!(item.inner, ItemEnum::Function(_)))
+}
+
+fn first_argument(args: Option<&GenericArgs>) -> Option<&Type> {
+    let Some(GenericArgs::AngleBracketed { args, .. }) = args else {
+        return None;
+    };
+    args.iter().find_map(|arg| match arg {
+        GenericArg::Type(ty) => Some(ty),
+        _ => None,
+    })
+}
+
+/// The traits that a generic argument has.
+fn bounds(generics: &Generics, name: &str) -> BTreeSet<String> {
+    use rustdoc_types::GenericParamDefKind;
+    let own = generics
+        .params
+        .iter()
+        .filter(|param| param.name == name)
+        .flat_map(|param| match &param.kind {
+            GenericParamDefKind::Type { bounds, .. } => bounds.clone(),
+            _ => Vec::new(),
+        });
+    let others = generics.where_predicates.iter().flat_map(|one| match one {
+        WherePredicate::BoundPredicate { type_, bounds, .. }
+            if *type_ == Type::Generic(name.into()) =>
+        {
+            bounds.clone()
+        }
+        _ => Vec::new(),
+    });
+    own.chain(others)
+        .filter_map(|bound| match bound {
+            GenericBound::TraitBound { trait_, .. } => Some(trait_.path),
+            _ => None,
+        })
+        .collect()
+}
+
+fn write(calls: &BTreeMap<String, Vec<String>>, odd: &[String]) -> String {
+    let mut text = String::from(
+        "//! Made by `generate` out of rustdoc's JSON: tests/every-function/run --generate.\n\n#![expect(\n    clippy::semicolon_if_nothing_returned,\n    clippy::unit_arg,\n    reason = \"a call is one expression\"\n)]\n\nuse crate::odd::{self, Odd, Source};\nuse crate::{Call, seen};\n\n/// A call of each public function.\npub const CALLS: &[Call] = &[\n",
+    );
+    for (name, calls) in calls {
+        for (index, call) in calls.iter().enumerate() {
+            let number = if calls.len() > 1 {
+                format!("#{index}")
+            } else {
+                String::new()
+            };
+            let source = if call.contains("s.") && call.replace("::", "").contains("s.") {
+                "s"
+            } else {
+                "_"
+            };
+            let needs_gpu = call.contains("s.gpu()")
+                || call.contains("s.kernel()")
+                || name.contains("gpu::GpuTracer")
+                || name.contains("buffer::Buffer");
+            let on_gpu = if needs_gpu { ".on_gpu()" } else { "" };
+            let few = FEW
+                .iter()
+                .find(|(few, ..)| few == name)
+                .map_or(String::new(), |(_, most, seconds)| {
+                    format!(".at_most({most}, {seconds})")
+                });
+            let _ = writeln!(
+                text,
+                "Call::new(\"{name}{number}\", |{source}| seen({call})){on_gpu}{few},"
+            );
+        }
+    }
+    text += "];\n\n";
+    for one in odd {
+        text += one;
+        text += "\n";
+    }
+    text
+}

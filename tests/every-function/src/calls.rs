@@ -1,0 +1,2736 @@
+//! Made by `generate` out of rustdoc's JSON: tests/every-function/run --generate.
+
+#![expect(
+    clippy::semicolon_if_nothing_returned,
+    clippy::unit_arg,
+    reason = "a call is one expression"
+)]
+
+use crate::odd::{self, Odd, Source};
+use crate::{Call, seen};
+
+/// A call of each public function.
+pub const CALLS: &[Call] = &[
+    Call::new(
+        "[spherule_kernel::sphere::Sphere] as spherule_kernel::nearest::Spheres::count",
+        |s| {
+            seen(
+                <[spherule_kernel::sphere::Sphere] as spherule_kernel::nearest::Spheres>::count(
+                    &s.many()[..],
+                ),
+            )
+        },
+    ),
+    Call::new("spherule::accuracy::ask::fresnel", |s| {
+        seen(spherule::accuracy::ask::fresnel(
+            &spherule::Device::Cpu,
+            &s.many()[..],
+        ))
+    }),
+    Call::new("spherule::accuracy::ask::nearest", |s| {
+        seen(spherule::accuracy::ask::nearest(
+            &spherule::Device::Cpu,
+            s.draw(),
+            &s.many()[..],
+            &s.many()[..],
+        ))
+    }),
+    Call::new("spherule::accuracy::ask::occluded", |s| {
+        seen(spherule::accuracy::ask::occluded(
+            &spherule::Device::Cpu,
+            s.draw(),
+            &s.many()[..],
+            &s.many()[..],
+        ))
+    }),
+    Call::new("spherule::accuracy::ask::surfaces", |s| {
+        seen(spherule::accuracy::ask::surfaces(
+            &spherule::Device::Cpu,
+            &s.many()[..],
+            &s.many()[..],
+        ))
+    }),
+    Call::new("spherule::accuracy::ask::walks", |s| {
+        seen(spherule::accuracy::ask::walks(
+            &spherule::Device::Cpu,
+            s.draw(),
+            &s.many()[..],
+            &s.many()[..],
+        ))
+    }),
+    Call::new("spherule::accuracy::canary::Canary::objection", |s| {
+        seen(spherule::accuracy::canary::Canary::objection(
+            &s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule::accuracy::canary::Canary::on", |_| {
+        seen(spherule::accuracy::canary::Canary::on(
+            &spherule::Device::Cpu,
+        ))
+    }),
+    Call::new("spherule::accuracy::canary::Canary::on_gpu", |s| {
+        seen(spherule::accuracy::canary::Canary::on_gpu(s.gpu()))
+    })
+    .on_gpu(),
+    Call::new("spherule::accuracy::canary::Canary::require", |s| {
+        seen(spherule::accuracy::canary::Canary::require(
+            &s.draw(),
+            s.draw(),
+            &s.text(),
+        ))
+    }),
+    Call::new("spherule::accuracy::canary::Canary::require_on_gpu", |s| {
+        seen(spherule::accuracy::canary::Canary::require_on_gpu(
+            s.gpu(),
+            s.draw(),
+        ))
+    })
+    .on_gpu(),
+    Call::new("spherule::accuracy::canary::Share::is_whole", |s| {
+        seen(spherule::accuracy::canary::Share::is_whole(s.draw()))
+    }),
+    Call::new("spherule::accuracy::cases::Case::judge", |s| {
+        seen(spherule::accuracy::cases::Case::judge(
+            &s.draw(),
+            &spherule::Device::Cpu,
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule::accuracy::cases::Case::samples", |s| {
+        seen(spherule::accuracy::cases::Case::samples(&s.draw()).count())
+    }),
+    Call::new("spherule::accuracy::cases::Verdict::is_broken", |s| {
+        seen(spherule::accuracy::cases::Verdict::is_broken(&s.draw()))
+    }),
+    Call::new("spherule::accuracy::cases::Verdict::of", |s| {
+        seen(spherule::accuracy::cases::Verdict::of(s.draw(), s.draw()))
+    }),
+    Call::new("spherule::accuracy::cases::catalogue", |_| {
+        seen(spherule::accuracy::cases::catalogue())
+    }),
+    Call::new("spherule::accuracy::choose::choose", |s| {
+        seen(spherule::accuracy::choose::choose(
+            &s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule::accuracy::families::Family::name", |s| {
+        seen(spherule::accuracy::families::Family::name(s.draw()))
+    }),
+    Call::new("spherule::accuracy::families::Family::sample", |s| {
+        seen(spherule::accuracy::families::Family::sample(
+            s.draw(),
+            s.draw(),
+            s.few(),
+        ))
+    }),
+    Call::new("spherule::accuracy::frames::measure", |s| {
+        seen(spherule::accuracy::frames::measure(
+            &spherule::Device::Cpu,
+            &s.many()[..],
+            &s.draw(),
+        ))
+    }),
+    Call::new("spherule::accuracy::measure::Escalation as Display", |s| {
+        seen(
+            s.draw::<spherule::accuracy::measure::Escalation>()
+                .to_string(),
+        )
+    }),
+    Call::new("spherule::accuracy::measure::Escalation::of", |s| {
+        seen(spherule::accuracy::measure::Escalation::of(&s.many()[..]))
+    }),
+    Call::new("spherule::accuracy::measure::Measured::ulp_at", |s| {
+        seen(spherule::accuracy::measure::Measured::ulp_at(
+            &s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule::accuracy::measure::intersect_all", |s| {
+        seen(spherule::accuracy::measure::intersect_all(
+            &spherule::Device::Cpu,
+            s.draw(),
+            &s.many()[..],
+        ))
+    }),
+    Call::new("spherule::accuracy::measure::intersect_on_gpu", |s| {
+        seen(spherule::accuracy::measure::intersect_on_gpu(
+            s.gpu(),
+            s.draw(),
+            &s.many()[..],
+        ))
+    })
+    .on_gpu(),
+    Call::new("spherule::accuracy::measure::judge", |s| {
+        seen(spherule::accuracy::measure::judge(
+            &s.many()[..],
+            &s.many()[..],
+        ))
+    }),
+    Call::new("spherule::accuracy::measure::self_hits", |s| {
+        seen(spherule::accuracy::measure::self_hits(
+            &spherule::Device::Cpu,
+            s.draw(),
+            &s.many()[..],
+            &s.many()[..],
+        ))
+    }),
+    Call::new("spherule::accuracy::oracle::Intersection::compare", |s| {
+        seen(spherule::accuracy::oracle::Intersection::compare(
+            &s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule::accuracy::oracle::Intersection::margin", |s| {
+        seen(spherule::accuracy::oracle::Intersection::margin(&s.draw()))
+    }),
+    Call::new("spherule::accuracy::oracle::Intersection::meets", |s| {
+        seen(spherule::accuracy::oracle::Intersection::meets(&s.draw()))
+    }),
+    Call::new("spherule::accuracy::oracle::Intersection::nearest", |s| {
+        seen(spherule::accuracy::oracle::Intersection::nearest(
+            &s.draw(),
+            &s.draw(),
+        ))
+    }),
+    Call::new("spherule::accuracy::oracle::Intersection::of", |s| {
+        seen(spherule::accuracy::oracle::Intersection::of(
+            &s.draw(),
+            &s.draw(),
+        ))
+    }),
+    Call::new("spherule::accuracy::oracle::Intersection::root", |s| {
+        seen(spherule::accuracy::oracle::Intersection::root(
+            &s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new(
+        "spherule::accuracy::oracle::Intersection::side_of_origin",
+        |s| {
+            seen(spherule::accuracy::oracle::Intersection::side_of_origin(
+                &s.draw(),
+            ))
+        },
+    ),
+    Call::new("spherule::accuracy::oracle::is_transmitted", |s| {
+        seen(spherule::accuracy::oracle::is_transmitted(
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule::accuracy::price::measure", |s| {
+        seen(spherule::accuracy::price::measure(
+            &spherule::Device::Cpu,
+            &s.many()[..],
+            &s.many()[..],
+        ))
+    }),
+    Call::new("spherule::accuracy::random::Random::log_within", |s| {
+        seen(spherule::accuracy::random::Random::log_within(
+            &mut s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule::accuracy::random::Random::new", |s| {
+        seen(spherule::accuracy::random::Random::new(s.draw()))
+    }),
+    Call::new("spherule::accuracy::random::Random::next_u32", |s| {
+        seen(spherule::accuracy::random::Random::next_u32(&mut s.draw()))
+    }),
+    Call::new("spherule::accuracy::random::Random::unit_vec3", |s| {
+        seen(spherule::accuracy::random::Random::unit_vec3(&mut s.draw()))
+    }),
+    Call::new("spherule::accuracy::random::Random::vec3", |s| {
+        seen(spherule::accuracy::random::Random::vec3(
+            &mut s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule::accuracy::random::Random::within", |s| {
+        seen(spherule::accuracy::random::Random::within(
+            &mut s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule::accuracy::report::page", |s| {
+        seen(spherule::accuracy::report::page(
+            &s.text(),
+            s.draw(),
+            &s.draw::<odd::OddFamilies>().get(),
+            Some((&s.text(), &s.many()[..])),
+            &s.many()[..],
+            &s.text(),
+        ))
+    }),
+    Call::new("spherule::accuracy::samples::in_all", |s| {
+        seen(spherule::accuracy::samples::in_all(s.draw(), s.few()))
+    }),
+    Call::new("spherule::accuracy::samples::measure", |s| {
+        seen(spherule::accuracy::samples::measure(
+            &spherule::Device::Cpu,
+            &s.many()[..],
+            &s.draw(),
+            s.few(),
+        ))
+    }),
+    Call::new("spherule::accuracy::scene_cases::SceneCase::judge", |s| {
+        seen(spherule::accuracy::scene_cases::SceneCase::judge(
+            &s.draw(),
+            &spherule::Device::Cpu,
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule::accuracy::scene_rays::sample", |s| {
+        seen(spherule::accuracy::scene_rays::sample(
+            &s.draw(),
+            s.draw(),
+            s.few(),
+        ))
+    }),
+    Call::new("spherule::accuracy::screen::nearest", |s| {
+        seen(spherule::accuracy::screen::nearest(&s.draw(), &s.draw()))
+    }),
+    Call::new("spherule::accuracy::screen::screen", |s| {
+        seen(spherule::accuracy::screen::screen(&s.draw(), &s.draw()))
+    }),
+    Call::new("spherule::accuracy::ulp::distance", |s| {
+        seen(spherule::accuracy::ulp::distance(s.draw(), s.draw()))
+    }),
+    Call::new("spherule::bench::export::export", |s| {
+        seen(spherule::bench::export::export(
+            &s.folder(),
+            &s.text(),
+            &s.draw(),
+            &s.draw(),
+            &s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule::bench::limit::Limit::of", |_| {
+        seen(spherule::bench::limit::Limit::of(&spherule::Device::Cpu))
+    })
+    .at_most(2, 20),
+    Call::new("spherule::bench::limit::Limit::rays_per_s", |s| {
+        seen(spherule::bench::limit::Limit::rays_per_s(
+            &s.draw(),
+            s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule::bench::measure::measure", |s| {
+        seen(spherule::bench::measure::measure(
+            &spherule::Device::Cpu,
+            &s.text(),
+            &s.draw(),
+            s.draw(),
+            s.draw(),
+            Some(&s.draw()),
+        ))
+    }),
+    Call::new("spherule::bench::rays::Kind::is_any", |s| {
+        seen(spherule::bench::rays::Kind::is_any(s.draw()))
+    }),
+    Call::new("spherule::bench::rays::Kind::name", |s| {
+        seen(spherule::bench::rays::Kind::name(s.draw()))
+    }),
+    Call::new("spherule::bench::rays::RaySets::kind", |s| {
+        seen(spherule::bench::rays::RaySets::kind(&s.draw(), s.draw()))
+    }),
+    Call::new("spherule::bench::rays::RaySets::of", |s| {
+        seen(spherule::bench::rays::RaySets::of(
+            &s.draw(),
+            &s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule::bench::scenes::BenchScene::make", |s| {
+        seen(spherule::bench::scenes::BenchScene::make(
+            s.draw(),
+            s.few(),
+            s.few(),
+        ))
+    }),
+    Call::new("spherule::bench::scenes::BenchScene::name", |s| {
+        seen(spherule::bench::scenes::BenchScene::name(s.draw()))
+    }),
+    Call::new("spherule::bench::scenes::BenchScene::named", |s| {
+        seen(spherule::bench::scenes::BenchScene::named(&s.text()))
+    }),
+    Call::new("spherule::bench::scenes::BenchScene::reach", |s| {
+        seen(spherule::bench::scenes::BenchScene::reach(s.draw()))
+    }),
+    Call::new("spherule::bench::scenes::load", |s| {
+        seen(spherule::bench::scenes::load(&s.text(), s.few(), s.few()))
+    }),
+    Call::new("spherule::bench::verify::verify", |s| {
+        seen(spherule::bench::verify::verify(
+            &spherule::Device::Cpu,
+            &s.draw(),
+            &s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule::device::Device::backend", |_| {
+        seen(spherule::device::Device::backend(&spherule::Device::Cpu))
+    }),
+    Call::new("spherule::device::Device::has_f64", |_| {
+        seen(spherule::device::Device::has_f64(&spherule::Device::Cpu))
+    }),
+    Call::new("spherule::device::Device::name", |_| {
+        seen(spherule::device::Device::name(&spherule::Device::Cpu))
+    }),
+    Call::new("spherule::device::Device::open", |s| {
+        seen(spherule::device::Device::open(&s.draw()))
+    }),
+    Call::new("spherule::device::adapter::DeviceChoice as Display", |s| {
+        seen(
+            s.draw::<spherule::device::adapter::DeviceChoice>()
+                .to_string(),
+        )
+    }),
+    Call::new("spherule::device::adapter::DeviceChoice as FromStr", |s| {
+        seen(s.text().parse::<spherule::device::adapter::DeviceChoice>())
+    }),
+    Call::new("spherule::device::adapter::instance", |_| {
+        seen(spherule::device::adapter::instance())
+    }),
+    Call::new("spherule::device::adapter::list_adapters", |_| {
+        seen(spherule::device::adapter::list_adapters())
+    }),
+    Call::new("spherule::device::buffer::Buffer::binding", |s| {
+        seen(spherule::device::buffer::Buffer::binding(&s.draw()))
+    })
+    .on_gpu(),
+    Call::new("spherule::device::buffer::Buffer::is_empty", |s| {
+        seen(spherule::device::buffer::Buffer::is_empty(&s.draw()))
+    })
+    .on_gpu(),
+    Call::new("spherule::device::buffer::Buffer::len", |s| {
+        seen(spherule::device::buffer::Buffer::len(&s.draw()))
+    })
+    .on_gpu(),
+    Call::new("spherule::device::errors::is_waiting", |_| {
+        seen(spherule::device::is_waiting())
+    }),
+    Call::new("spherule::device::gpu::Gpu::clear", |s| {
+        seen(spherule::device::gpu::Gpu::clear::<u32>(s.gpu(), &s.draw()))
+    })
+    .on_gpu(),
+    Call::new("spherule::device::gpu::Gpu::has_f64", |s| {
+        seen(spherule::device::gpu::Gpu::has_f64(s.gpu()))
+    })
+    .on_gpu(),
+    Call::new("spherule::device::gpu::Gpu::is_software", |s| {
+        seen(spherule::device::gpu::Gpu::is_software(s.gpu()))
+    })
+    .on_gpu(),
+    Call::new("spherule::device::gpu::Gpu::kernel", |s| {
+        seen(spherule::device::gpu::Gpu::kernel(
+            s.gpu(),
+            &s.draw(),
+            &s.text(),
+            &s.many()[..],
+        ))
+    })
+    .on_gpu(),
+    Call::new("spherule::device::gpu::Gpu::limits", |s| {
+        seen(spherule::device::gpu::Gpu::limits(s.gpu()))
+    })
+    .on_gpu(),
+    Call::new("spherule::device::gpu::Gpu::name", |s| {
+        seen(spherule::device::gpu::Gpu::name(s.gpu()))
+    })
+    .on_gpu(),
+    Call::new("spherule::device::gpu::Gpu::open", |s| {
+        seen(spherule::device::gpu::Gpu::open(&s.draw()))
+    }),
+    Call::new("spherule::device::gpu::Gpu::passes_spirv_through", |s| {
+        seen(spherule::device::gpu::Gpu::passes_spirv_through(s.gpu()))
+    })
+    .on_gpu(),
+    Call::new("spherule::device::gpu::Gpu::read", |s| {
+        seen(spherule::device::gpu::Gpu::read::<u32>(s.gpu(), &s.draw()))
+    })
+    .on_gpu(),
+    Call::new("spherule::device::gpu::Gpu::read_first", |s| {
+        seen(spherule::device::gpu::Gpu::read_first::<u32>(
+            s.gpu(),
+            &s.draw(),
+            s.draw(),
+        ))
+    })
+    .on_gpu(),
+    Call::new("spherule::device::gpu::Gpu::rows_of", |s| {
+        seen(spherule::device::gpu::Gpu::rows_of(s.gpu(), s.draw()))
+    })
+    .on_gpu(),
+    Call::new("spherule::device::gpu::Gpu::update", |s| {
+        seen(spherule::device::gpu::Gpu::update::<u32>(
+            s.gpu(),
+            &s.draw(),
+            &s.draw(),
+        ))
+    })
+    .on_gpu(),
+    Call::new("spherule::device::gpu::Gpu::upload", |s| {
+        seen(spherule::device::gpu::Gpu::upload::<u32>(
+            s.gpu(),
+            &s.text(),
+            &s.many()[..],
+        ))
+    })
+    .on_gpu(),
+    Call::new("spherule::device::gpu::Gpu::upload_uniform", |s| {
+        seen(spherule::device::gpu::Gpu::upload_uniform::<u32>(
+            s.gpu(),
+            &s.text(),
+            &s.draw(),
+        ))
+    })
+    .on_gpu(),
+    Call::new("spherule::device::gpu::Gpu::zeroed", |s| {
+        seen(spherule::device::gpu::Gpu::zeroed::<u32>(
+            s.gpu(),
+            &s.text(),
+            s.few(),
+        ))
+    })
+    .on_gpu(),
+    Call::new("spherule::device::gpu::GpuOptions as Default", |_| {
+        seen(<spherule::device::gpu::GpuOptions as Default>::default())
+    }),
+    Call::new("spherule::device::gpu::Kernel::workgroup_size", |s| {
+        seen(spherule::device::gpu::Kernel::workgroup_size(s.kernel()))
+    })
+    .on_gpu(),
+    Call::new("spherule::device::gpu::Kernel::workgroups_for", |s| {
+        seen(spherule::device::gpu::Kernel::workgroups_for(
+            s.kernel(),
+            s.draw(),
+        ))
+    })
+    .on_gpu(),
+    Call::new("spherule::device::gpu::LaunchTime::best", |s| {
+        seen(spherule::device::gpu::LaunchTime::best(&s.draw()))
+    }),
+    Call::new("spherule::device::spirv::Module as Debug", |s| {
+        seen(format!("{:?}", s.draw::<spherule::device::spirv::Module>()))
+    }),
+    Call::new("spherule::device::spirv::Module::entry_points", |s| {
+        seen(spherule::device::spirv::Module::entry_points(&s.draw()))
+    }),
+    Call::new("spherule::device::spirv::Module::from_bytes", |s| {
+        seen(spherule::device::spirv::Module::from_bytes(
+            &s.text(),
+            &s.module()[..],
+        ))
+    }),
+    Call::new("spherule::device::spirv::Module::is_trusted", |s| {
+        seen(spherule::device::spirv::Module::is_trusted(&s.draw()))
+    }),
+    Call::new("spherule::device::spirv::Module::name", |s| {
+        seen(spherule::device::spirv::Module::name(&s.draw()))
+    }),
+    Call::new("spherule::device::spirv::Module::needs_f64", |s| {
+        seen(spherule::device::spirv::Module::needs_f64(&s.draw()))
+    }),
+    Call::new("spherule::device::spirv::Module::only", |s| {
+        seen(spherule::device::spirv::Module::only(&s.draw(), &s.text()))
+    }),
+    Call::new("spherule::device::spirv::Module::specialise", |s| {
+        seen(spherule::device::spirv::Module::specialise(
+            s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule::device::spirv::Module::words", |s| {
+        seen(spherule::device::spirv::Module::words(&s.draw()))
+    }),
+    Call::new("spherule::error::Error::help", |s| {
+        seen(spherule::error::Error::help(&s.draw()))
+    }),
+    Call::new("spherule::error::Error::is_input", |s| {
+        seen(spherule::error::Error::is_input(&s.draw()))
+    }),
+    Call::new("spherule::error::Place::line_column", |s| {
+        seen(spherule::error::Place::line_column(&s.draw()))
+    }),
+    Call::new("spherule::film::Image::alpha", |s| {
+        seen(spherule::film::Image::alpha(&s.draw()))
+    }),
+    Call::new("spherule::film::Image::check_destination", |s| {
+        seen(spherule::film::Image::check_destination(&s.path()))
+    }),
+    Call::new("spherule::film::Image::depth_range", |s| {
+        seen(spherule::film::Image::depth_range(&s.draw()))
+    }),
+    Call::new("spherule::film::Image::height", |s| {
+        seen(spherule::film::Image::height(&s.draw()))
+    }),
+    Call::new("spherule::film::Image::new", |s| {
+        seen(spherule::film::Image::new(
+            s.few(),
+            s.few(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule::film::Image::pixel", |s| {
+        seen(spherule::film::Image::pixel(&s.draw(), s.draw(), s.draw()))
+    }),
+    Call::new("spherule::film::Image::pixels", |s| {
+        seen(spherule::film::Image::pixels(&s.draw()))
+    }),
+    Call::new("spherule::film::Image::save", |s| {
+        seen(spherule::film::Image::save(&s.draw(), s.path()))
+    }),
+    Call::new("spherule::film::Image::set_alpha", |s| {
+        seen(spherule::film::Image::set_alpha(&mut s.draw(), s.draw()))
+    }),
+    Call::new("spherule::film::Image::shading", |s| {
+        seen(spherule::film::Image::shading(&s.draw()))
+    }),
+    Call::new("spherule::film::Image::to_rgb8", |s| {
+        seen(spherule::film::Image::to_rgb8(&s.draw()))
+    }),
+    Call::new("spherule::film::Image::to_rgba8", |s| {
+        seen(spherule::film::Image::to_rgba8(&s.draw()))
+    }),
+    Call::new("spherule::film::Image::width", |s| {
+        seen(spherule::film::Image::width(&s.draw()))
+    }),
+    Call::new("spherule::film::allocate", |s| {
+        seen(spherule::film::allocate::<f32>(s.side(), s.side()))
+    }),
+    Call::new("spherule::film::compare::Comparison::is_within", |s| {
+        seen(spherule::film::compare::Comparison::is_within(&s.draw()))
+    }),
+    Call::new("spherule::film::compare::Comparison::of", |s| {
+        seen(spherule::film::compare::Comparison::of(
+            &s.draw(),
+            &s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule::film::compare::Tolerance as Default", |_| {
+        seen(<spherule::film::compare::Tolerance as Default>::default())
+    }),
+    Call::new("spherule::film::encode::srgb", |s| {
+        seen(spherule::film::encode::srgb(s.draw()))
+    }),
+    Call::new("spherule::film::file::Format::of", |s| {
+        seen(spherule::film::file::Format::of(&s.path()))
+    }),
+    Call::new("spherule::film::flip::mean_flip", |s| {
+        seen(spherule::film::flip::mean_flip(&s.draw(), &s.draw()))
+    }),
+    Call::new("spherule::kernel_module::f32", |_| {
+        seen(spherule::kernel_module::f32())
+    }),
+    Call::new("spherule::kernel_module::f64", |_| {
+        seen(spherule::kernel_module::f64())
+    }),
+    Call::new("spherule::kernel_module::for_rung", |s| {
+        seen(spherule::kernel_module::for_rung(s.draw()))
+    }),
+    Call::new("spherule::render::Settings as From#0", |s| {
+        seen(<spherule::render::Settings as From<
+            spherule_kernel::shading::Shading,
+        >>::from(s.draw()))
+    }),
+    Call::new("spherule::render::Settings as From#1", |s| {
+        seen(<spherule::render::Settings as From<(
+            spherule_kernel::shading::Shading,
+            spherule_kernel::precision::Rung,
+        )>>::from(s.draw()))
+    }),
+    Call::new("spherule::render::cost::frames", |s| {
+        seen(spherule::render::cost::frames(s.draw()))
+    }),
+    Call::new("spherule::render::cost::measure", |s| {
+        seen(spherule::render::cost::measure(
+            &s.draw(),
+            s.draw(),
+            &spherule::Device::Cpu,
+            &s.many()[..],
+        ))
+    }),
+    Call::new("spherule::render::cpu::Prepared::new", |s| {
+        seen(spherule::render::cpu::Prepared::new(&s.draw(), s.draw()))
+    }),
+    Call::new("spherule::render::cpu::render", |s| {
+        seen(spherule::render::cpu::render(
+            &s.launch(),
+            &s.draw::<odd::OddPrepared>().get(),
+            s.draw(),
+            spherule::render::QUIET,
+        ))
+    }),
+    Call::new("spherule::render::cpu::render_to", |s| {
+        seen(spherule::render::cpu::render_to(
+            &mut s.many()[..],
+            &s.launch(),
+            &s.draw::<odd::OddPrepared>().get(),
+            s.draw(),
+            spherule::render::QUIET,
+        ))
+    }),
+    Call::new("spherule::render::estimate::is_brief", |s| {
+        seen(spherule::render::estimate::is_brief(
+            &s.draw(),
+            s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule::render::estimate::on_cpu", |s| {
+        seen(spherule::render::estimate::on_cpu(
+            &s.draw(),
+            s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule::render::fit::fit", |s| {
+        seen(spherule::render::fit::fit(&mut s.draw(), s.draw(), |_| {
+            Ok(s.draw())
+        }))
+    }),
+    Call::new("spherule::render::gpu::Prepared::new", |s| {
+        seen(spherule::render::gpu::Prepared::new(
+            s.gpu(),
+            &s.draw(),
+            s.draw(),
+        ))
+    })
+    .on_gpu(),
+    Call::new("spherule::render::gpu::render", |s| {
+        seen(spherule::render::gpu::render(
+            s.gpu(),
+            &s.launch(),
+            &s.draw(),
+            spherule::render::QUIET,
+        ))
+    })
+    .on_gpu(),
+    Call::new("spherule::render::gpu::render_paced", |s| {
+        seen(spherule::render::gpu::render_paced(
+            s.gpu(),
+            &s.launch(),
+            &s.draw(),
+            spherule::render::QUIET,
+            &mut s.draw(),
+        ))
+    })
+    .on_gpu(),
+    Call::new("spherule::render::gpu::time", |s| {
+        seen(spherule::render::gpu::time(s.gpu(), &s.launch(), &s.draw()))
+    })
+    .on_gpu(),
+    Call::new("spherule::render::pace::Pace::first_on", |s| {
+        seen(spherule::render::pace::Pace::first_on(s.gpu()))
+    })
+    .on_gpu(),
+    Call::new("spherule::render::pace::Pace::learn", |s| {
+        seen(spherule::render::pace::Pace::learn(
+            &mut s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule::render::pace::Pace::spheres", |s| {
+        seen(spherule::render::pace::Pace::spheres(&s.draw(), s.draw()))
+    }),
+    Call::new("spherule::render::pace::Pace::starting_at", |s| {
+        seen(spherule::render::pace::Pace::starting_at(s.draw()))
+    }),
+    Call::new("spherule::render::pace::Pace::tile", |s| {
+        seen(spherule::render::pace::Pace::tile(
+            &s.draw(),
+            s.few(),
+            s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule::render::packet::Frusta::of", |s| {
+        seen(spherule::render::packet::Frusta::of(&s.launch()))
+    }),
+    Call::new("spherule::render::packet::Packet as Default", |_| {
+        seen(<spherule::render::packet::Packet as Default>::default())
+    }),
+    Call::new("spherule::render::packet::Packet::hit", |s| {
+        seen(spherule::render::packet::Packet::hit(&s.draw(), s.draw()))
+    }),
+    Call::new("spherule::render::packet::Packet::new", |_| {
+        seen(spherule::render::packet::Packet::new())
+    }),
+    Call::new("spherule::render::packet::trace#0", |s| {
+        seen(spherule::render::packet::trace::<0>(
+            &mut s.draw(),
+            &s.launch(),
+            &s.draw(),
+            s.draw(),
+            s.draw::<odd::OddTree>().get(),
+            &s.many()[..],
+        ))
+    }),
+    Call::new("spherule::render::packet::trace#1", |s| {
+        seen(spherule::render::packet::trace::<1>(
+            &mut s.draw(),
+            &s.launch(),
+            &s.draw(),
+            s.draw(),
+            s.draw::<odd::OddTree>().get(),
+            &s.many()[..],
+        ))
+    }),
+    Call::new("spherule::render::packet::trace#2", |s| {
+        seen(spherule::render::packet::trace::<4>(
+            &mut s.draw(),
+            &s.launch(),
+            &s.draw(),
+            s.draw(),
+            s.draw::<odd::OddTree>().get(),
+            &s.many()[..],
+        ))
+    }),
+    Call::new("spherule::render::paths::EffectChoice::compiled", |s| {
+        seen(spherule::render::paths::EffectChoice::compiled(
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule::render::paths::EffectChoice::shown", |s| {
+        seen(spherule::render::paths::EffectChoice::shown(
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule::render::paths::cpu::render", |s| {
+        seen(spherule::render::paths::cpu::render(
+            &s.draw(),
+            &s.draw(),
+            spherule::render::QUIET,
+        ))
+    }),
+    Call::new("spherule::render::paths::gpu::compile", |s| {
+        seen(spherule::render::paths::gpu::compile(
+            s.gpu(),
+            &s.draw(),
+            &s.draw(),
+        ))
+    })
+    .on_gpu()
+    .at_most(2, 120),
+    Call::new("spherule::render::paths::gpu::render", |s| {
+        seen(spherule::render::paths::gpu::render(
+            s.gpu(),
+            &s.draw(),
+            &s.draw(),
+            spherule::render::QUIET,
+        ))
+    })
+    .on_gpu()
+    .at_most(2, 120),
+    Call::new("spherule::render::paths::prepare::Prepared::new", |s| {
+        seen(spherule::render::paths::prepare::Prepared::new(
+            &s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule::render::paths::render", |s| {
+        seen(spherule::render::paths::render(
+            &s.draw(),
+            &s.draw(),
+            &spherule::Device::Cpu,
+            spherule::render::QUIET,
+        ))
+    }),
+    Call::new("spherule::render::render", |s| {
+        seen(spherule::render::render(
+            &s.draw(),
+            s.draw::<spherule::render::Settings>(),
+            &spherule::Device::Cpu,
+            spherule::render::QUIET,
+        ))
+    }),
+    Call::new("spherule::render::whole_image", |s| {
+        seen(spherule::render::whole_image(&s.draw()))
+    }),
+    Call::new("spherule::scene::Scene::aspect", |s| {
+        seen(spherule::scene::Scene::aspect(&s.draw()))
+    }),
+    Call::new("spherule::scene::Scene::called_effects", |s| {
+        seen(spherule::scene::Scene::called_effects(&s.draw()))
+    }),
+    Call::new("spherule::scene::Scene::effects", |s| {
+        seen(spherule::scene::Scene::effects(&s.draw()))
+    }),
+    Call::new("spherule::scene::Scene::load", |s| {
+        seen(spherule::scene::Scene::load(s.path()))
+    }),
+    Call::new("spherule::scene::Scene::new", |s| {
+        seen(spherule::scene::Scene::new(s.draw()))
+    }),
+    Call::new("spherule::scene::Scene::samples", |s| {
+        seen(spherule::scene::Scene::samples(&s.draw()))
+    }),
+    Call::new("spherule::scene::Scene::validate", |s| {
+        seen(spherule::scene::Scene::validate(&s.draw()))
+    }),
+    Call::new("spherule::scene::Scene::view_or_framed", |s| {
+        seen(spherule::scene::Scene::view_or_framed(&s.draw()))
+    }),
+    Call::new("spherule::scene::environment::load", |s| {
+        seen(spherule::scene::environment::load(&s.path(), s.draw()))
+    }),
+    Call::new("spherule::scene::limits::Range as Display", |s| {
+        seen(s.draw::<spherule::scene::limits::Range>().to_string())
+    }),
+    Call::new("spherule::scene::limits::Range::holds", |s| {
+        seen(spherule::scene::limits::Range::holds(s.draw(), s.draw()))
+    }),
+    Call::new("spherule::scene::limits::Range::holds_all", |s| {
+        seen(spherule::scene::limits::Range::holds_all(
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule::scene::limits::hollow", |s| {
+        seen(spherule::scene::limits::hollow(s.draw(), s.draw()))
+    }),
+    Call::new("spherule::scene::limits::is_vertical_fov", |s| {
+        seen(spherule::scene::limits::is_vertical_fov(s.draw()))
+    }),
+    Call::new("spherule::scene::limits::is_within", |s| {
+        seen(spherule::scene::limits::is_within(
+            &s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule::scene::molecule::elements::by_number", |s| {
+        seen(spherule::scene::molecule::elements::by_number(s.draw()))
+    }),
+    Call::new("spherule::scene::molecule::elements::by_symbol", |s| {
+        seen(spherule::scene::molecule::elements::by_symbol(&s.text()))
+    }),
+    Call::new("spherule::scene::molecule::is_molecule", |s| {
+        seen(spherule::scene::molecule::is_molecule(&s.text()))
+    }),
+    Call::new("spherule::scene::molecule::load", |s| {
+        seen(spherule::scene::molecule::load(&s.path()))
+    }),
+    Call::new("spherule::scene::molecule::pdb::parse", |s| {
+        seen(spherule::scene::molecule::pdb::parse(&s.file("pdb")))
+    }),
+    Call::new("spherule::scene::molecule::world", |s| {
+        seen(spherule::scene::molecule::world(&s.many()[..]))
+    }),
+    Call::new("spherule::scene::molecule::xyz::parse", |s| {
+        seen(spherule::scene::molecule::xyz::parse(&s.file("xyz")))
+    }),
+    Call::new("spherule::scene::surroundings::Sampling as Default", |_| {
+        seen(<spherule::scene::surroundings::Sampling as Default>::default())
+    }),
+    Call::new("spherule::scene::surroundings::Sun::height", |s| {
+        seen(spherule::scene::surroundings::Sun::height(&s.draw()))
+    }),
+    Call::new("spherule::scene::surroundings::Sun::radiance", |s| {
+        seen(spherule::scene::surroundings::Sun::radiance(&s.draw()))
+    }),
+    Call::new("spherule::scene::toml_file::parse", |s| {
+        seen(spherule::scene::toml_file::parse(&s.path(), s.file("toml")))
+    }),
+    Call::new("spherule::scene::tree::Acceleration::min_spheres", |s| {
+        seen(spherule::scene::tree::Acceleration::min_spheres(
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule::scene::tree::Nodes as Deref", |s| {
+        seen(std::ops::Deref::deref(
+            &s.draw::<spherule::scene::tree::Nodes>(),
+        ))
+    }),
+    Call::new("spherule::scene::tree::Nodes::tree", |s| {
+        seen(spherule::scene::tree::Nodes::tree(&s.draw()))
+    }),
+    Call::new("spherule::scene::tree::Tree::sort", |s| {
+        seen(spherule::scene::tree::Tree::sort(
+            &s.draw(),
+            &s.many::<u32>()[..],
+        ))
+    }),
+    Call::new("spherule::scene::tree::Tree::sort_world", |s| {
+        seen(spherule::scene::tree::Tree::sort_world(
+            &s.draw(),
+            &s.draw(),
+        ))
+    }),
+    Call::new("spherule::scene::tree::grow", |s| {
+        seen(spherule::scene::tree::grow(
+            &s.many()[..],
+            &s.many()[..],
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule::scene::tree::grow_still", |s| {
+        seen(spherule::scene::tree::grow_still(&s.many()[..], s.draw()))
+    }),
+    Call::new("spherule::scene::view::View::camera", |s| {
+        seen(spherule::scene::view::View::camera(&s.draw(), s.draw()))
+    }),
+    Call::new("spherule::scene::view::View::framing", |s| {
+        seen(spherule::scene::view::View::framing(
+            &s.many()[..],
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule::scene::world::World::add", |s| {
+        seen(spherule::scene::world::World::add(
+            &mut s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule::scene::world::World::add_material", |s| {
+        seen(spherule::scene::world::World::add_material(
+            &mut s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule::scene::world::World::add_moving", |s| {
+        seen(spherule::scene::world::World::add_moving(
+            &mut s.draw(),
+            s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule::scene::world::World::add_named_material", |s| {
+        seen(spherule::scene::world::World::add_named_material(
+            &mut s.draw(),
+            &s.text(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule::scene::world::World::append", |s| {
+        seen(spherule::scene::world::World::append(
+            &mut s.draw(),
+            &s.draw(),
+        ))
+    }),
+    Call::new("spherule::trace::cpu::CpuTracer::bytes", |s| {
+        seen(spherule::trace::cpu::CpuTracer::bytes(&s.draw()))
+    }),
+    Call::new("spherule::trace::cpu::CpuTracer::nearest", |s| {
+        seen(spherule::trace::cpu::CpuTracer::nearest(
+            &s.draw(),
+            s.draw(),
+            &s.many()[..],
+            &mut s.draw(),
+        ))
+    }),
+    Call::new("spherule::trace::cpu::CpuTracer::new", |s| {
+        seen(spherule::trace::cpu::CpuTracer::new(
+            &s.many()[..],
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule::trace::cpu::CpuTracer::occluded", |s| {
+        seen(spherule::trace::cpu::CpuTracer::occluded(
+            &s.draw(),
+            s.draw(),
+            &s.many()[..],
+            &mut s.draw(),
+        ))
+    }),
+    Call::new("spherule::trace::cpu::CpuTracer::order", |s| {
+        seen(spherule::trace::cpu::CpuTracer::order(&s.draw()))
+    }),
+    Call::new("spherule::trace::cpu::CpuTracer::tree", |s| {
+        seen(spherule::trace::cpu::CpuTracer::tree(&s.draw()))
+    }),
+    Call::new("spherule::trace::cpu::CpuTracer::work", |s| {
+        seen(spherule::trace::cpu::CpuTracer::work(
+            &s.draw(),
+            s.draw(),
+            s.draw(),
+            &s.many()[..],
+        ))
+    }),
+    Call::new("spherule::trace::gpu::GpuTracer::bytes", |s| {
+        seen(spherule::trace::gpu::GpuTracer::bytes(&s.draw()))
+    })
+    .on_gpu(),
+    Call::new("spherule::trace::gpu::GpuTracer::heat", |s| {
+        seen(spherule::trace::gpu::GpuTracer::heat(&s.draw(), &s.draw()))
+    })
+    .on_gpu(),
+    Call::new("spherule::trace::gpu::GpuTracer::hits", |s| {
+        seen(spherule::trace::gpu::GpuTracer::hits(&s.draw(), &s.draw()))
+    })
+    .on_gpu(),
+    Call::new("spherule::trace::gpu::GpuTracer::nearest", |s| {
+        seen(spherule::trace::gpu::GpuTracer::nearest(
+            &s.draw(),
+            s.draw(),
+            &s.draw(),
+        ))
+    })
+    .on_gpu(),
+    Call::new("spherule::trace::gpu::GpuTracer::new", |s| {
+        seen(spherule::trace::gpu::GpuTracer::new(
+            s.gpu(),
+            &s.many()[..],
+            s.draw(),
+        ))
+    })
+    .on_gpu(),
+    Call::new("spherule::trace::gpu::GpuTracer::occluded", |s| {
+        seen(spherule::trace::gpu::GpuTracer::occluded(
+            &s.draw(),
+            s.draw(),
+            &s.draw(),
+        ))
+    })
+    .on_gpu(),
+    Call::new("spherule::trace::gpu::GpuTracer::occlusions", |s| {
+        seen(spherule::trace::gpu::GpuTracer::occlusions(
+            &s.draw(),
+            &s.draw(),
+        ))
+    })
+    .on_gpu(),
+    Call::new("spherule::trace::gpu::GpuTracer::upload", |s| {
+        seen(spherule::trace::gpu::GpuTracer::upload(
+            &s.draw(),
+            &s.many()[..],
+        ))
+    })
+    .on_gpu(),
+    Call::new("spherule_kernel::arithmetic::distill::distill#0", |s| {
+        seen(spherule_kernel::arithmetic::distill::distill(
+            &mut s.draw::<[f32; 1]>(),
+        ))
+    }),
+    Call::new("spherule_kernel::arithmetic::distill::distill#1", |s| {
+        seen(spherule_kernel::arithmetic::distill::distill(
+            &mut s.draw::<[f32; 2]>(),
+        ))
+    }),
+    Call::new("spherule_kernel::arithmetic::distill::distill#2", |s| {
+        seen(spherule_kernel::arithmetic::distill::distill(
+            &mut s.draw::<[f32; 9]>(),
+        ))
+    }),
+    Call::new(
+        "spherule_kernel::arithmetic::double_single::DoubleSingle::difference",
+        |s| {
+            seen(
+                spherule_kernel::arithmetic::double_single::DoubleSingle::difference(
+                    s.draw(),
+                    s.draw(),
+                ),
+            )
+        },
+    ),
+    Call::new(
+        "spherule_kernel::arithmetic::double_single::DoubleSingle::divided_by",
+        |s| {
+            seen(
+                spherule_kernel::arithmetic::double_single::DoubleSingle::divided_by(
+                    s.draw(),
+                    s.draw(),
+                ),
+            )
+        },
+    ),
+    Call::new(
+        "spherule_kernel::arithmetic::double_single::DoubleSingle::from_float",
+        |s| seen(spherule_kernel::arithmetic::double_single::DoubleSingle::from_float(s.draw())),
+    ),
+    Call::new(
+        "spherule_kernel::arithmetic::double_single::DoubleSingle::minus",
+        |s| {
+            seen(
+                spherule_kernel::arithmetic::double_single::DoubleSingle::minus(s.draw(), s.draw()),
+            )
+        },
+    ),
+    Call::new(
+        "spherule_kernel::arithmetic::double_single::DoubleSingle::plus",
+        |s| {
+            seen(spherule_kernel::arithmetic::double_single::DoubleSingle::plus(s.draw(), s.draw()))
+        },
+    ),
+    Call::new(
+        "spherule_kernel::arithmetic::double_single::DoubleSingle::product",
+        |s| {
+            seen(
+                spherule_kernel::arithmetic::double_single::DoubleSingle::product(
+                    s.draw(),
+                    s.draw(),
+                ),
+            )
+        },
+    ),
+    Call::new(
+        "spherule_kernel::arithmetic::double_single::DoubleSingle::square_root",
+        |s| seen(spherule_kernel::arithmetic::double_single::DoubleSingle::square_root(s.draw())),
+    ),
+    Call::new(
+        "spherule_kernel::arithmetic::double_single::DoubleSingle::times",
+        |s| {
+            seen(
+                spherule_kernel::arithmetic::double_single::DoubleSingle::times(s.draw(), s.draw()),
+            )
+        },
+    ),
+    Call::new(
+        "spherule_kernel::arithmetic::double_single::DoubleSingle::times_float",
+        |s| {
+            seen(
+                spherule_kernel::arithmetic::double_single::DoubleSingle::times_float(
+                    s.draw(),
+                    s.draw(),
+                ),
+            )
+        },
+    ),
+    Call::new(
+        "spherule_kernel::arithmetic::double_single::DoubleSingle::total",
+        |s| {
+            seen(
+                spherule_kernel::arithmetic::double_single::DoubleSingle::total(s.draw(), s.draw()),
+            )
+        },
+    ),
+    Call::new("spherule_kernel::arithmetic::elements::get", |s| {
+        seen(spherule_kernel::arithmetic::elements::get(
+            &s.draw::<[u32; 5]>(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::arithmetic::elements::read", |s| {
+        seen(spherule_kernel::arithmetic::elements::read::<u32>(
+            &s.many()[..],
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::arithmetic::elements::set", |s| {
+        seen(spherule_kernel::arithmetic::elements::set(
+            &mut s.draw::<[u32; 5]>(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new(
+        "spherule_kernel::arithmetic::error_free::fast_two_sum",
+        |s| {
+            seen(spherule_kernel::arithmetic::error_free::fast_two_sum(
+                s.draw(),
+                s.draw(),
+            ))
+        },
+    ),
+    Call::new("spherule_kernel::arithmetic::error_free::split", |s| {
+        seen(spherule_kernel::arithmetic::error_free::split(s.draw()))
+    }),
+    Call::new("spherule_kernel::arithmetic::error_free::two_diff", |s| {
+        seen(spherule_kernel::arithmetic::error_free::two_diff(
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new(
+        "spherule_kernel::arithmetic::error_free::two_product",
+        |s| {
+            seen(spherule_kernel::arithmetic::error_free::two_product(
+                s.draw(),
+                s.draw(),
+            ))
+        },
+    ),
+    Call::new("spherule_kernel::arithmetic::error_free::two_sum", |s| {
+        seen(spherule_kernel::arithmetic::error_free::two_sum(
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::arithmetic::strict::add", |s| {
+        seen(spherule_kernel::arithmetic::strict::add(s.draw(), s.draw()))
+    }),
+    Call::new("spherule_kernel::arithmetic::strict::mul", |s| {
+        seen(spherule_kernel::arithmetic::strict::mul(s.draw(), s.draw()))
+    }),
+    Call::new("spherule_kernel::arithmetic::strict::sub", |s| {
+        seen(spherule_kernel::arithmetic::strict::sub(s.draw(), s.draw()))
+    }),
+    Call::new("spherule_kernel::bounds::Bounds::is_open", |s| {
+        seen(spherule_kernel::bounds::Bounds::is_open(
+            &s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::bounds::Line::bounds", |s| {
+        seen(spherule_kernel::bounds::Line::bounds(&s.draw(), s.draw()))
+    }),
+    Call::new("spherule_kernel::bounds::Line::may_hit", |s| {
+        seen(spherule_kernel::bounds::Line::may_hit(&s.draw(), s.draw()))
+    }),
+    Call::new("spherule_kernel::bounds::Line::of", |s| {
+        seen(spherule_kernel::bounds::Line::of(&s.draw()))
+    }),
+    Call::new("spherule_kernel::bounds::doubt", |s| {
+        seen(spherule_kernel::bounds::doubt(s.draw(), s.draw()))
+    }),
+    Call::new("spherule_kernel::camera::Camera::film", |s| {
+        seen(spherule_kernel::camera::Camera::film(s.draw(), s.draw()))
+    }),
+    Call::new("spherule_kernel::camera::Camera::from_basis", |s| {
+        seen(spherule_kernel::camera::Camera::from_basis(
+            s.draw(),
+            s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::camera::Camera::look_at", |s| {
+        seen(spherule_kernel::camera::Camera::look_at(
+            s.draw(),
+            s.draw(),
+            s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::camera::Camera::pixel_ray", |s| {
+        seen(spherule_kernel::camera::Camera::pixel_ray(
+            &s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::camera::Camera::ray", |s| {
+        seen(spherule_kernel::camera::Camera::ray(&s.draw(), s.draw()))
+    }),
+    Call::new("spherule_kernel::canary::sing", |s| {
+        seen(spherule_kernel::canary::sing(s.draw()))
+    }),
+    Call::new("spherule_kernel::canary::sing_wide", |s| {
+        seen(spherule_kernel::canary::sing_wide(s.draw()))
+    }),
+    Call::new("spherule_kernel::candidates::power_of_two_under", |s| {
+        seen(spherule_kernel::candidates::power_of_two_under(s.draw()))
+    }),
+    Call::new("spherule_kernel::cone::Cone::from_vec4", |s| {
+        seen(spherule_kernel::cone::Cone::from_vec4(s.draw()))
+    }),
+    Call::new("spherule_kernel::cone::Cone::none", |_| {
+        seen(spherule_kernel::cone::Cone::none())
+    }),
+    Call::new("spherule_kernel::cone::Cone::of", |s| {
+        seen(spherule_kernel::cone::Cone::of(s.draw(), s.draw()))
+    }),
+    Call::new("spherule_kernel::cone::Cone::to_vec4", |s| {
+        seen(spherule_kernel::cone::Cone::to_vec4(s.draw()))
+    }),
+    Call::new("spherule_kernel::cone::Sight::along", |s| {
+        seen(spherule_kernel::cone::Sight::along(s.draw()))
+    }),
+    Call::new("spherule_kernel::cone::Sight::misses", |s| {
+        seen(spherule_kernel::cone::Sight::misses(
+            &s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::effects::Effects::and", |s| {
+        seen(spherule_kernel::effects::Effects::and(s.draw(), s.draw()))
+    }),
+    Call::new("spherule_kernel::effects::Effects::any", |s| {
+        seen(spherule_kernel::effects::Effects::any(s.draw(), s.draw()))
+    }),
+    Call::new("spherule_kernel::effects::Effects::from_bits", |s| {
+        seen(spherule_kernel::effects::Effects::from_bits(s.draw()))
+    }),
+    Call::new("spherule_kernel::effects::Effects::is_empty", |s| {
+        seen(spherule_kernel::effects::Effects::is_empty(s.draw()))
+    }),
+    Call::new("spherule_kernel::effects::Effects::to_bits", |s| {
+        seen(spherule_kernel::effects::Effects::to_bits(s.draw()))
+    }),
+    Call::new("spherule_kernel::effects::Effects::within", |s| {
+        seen(spherule_kernel::effects::Effects::within(
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::effects::Effects::without", |s| {
+        seen(spherule_kernel::effects::Effects::without(
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::film::Accumulator::add", |s| {
+        seen(spherule_kernel::film::Accumulator::add(
+            &mut s.draw(),
+            s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::film::Accumulator::alpha", |s| {
+        seen(spherule_kernel::film::Accumulator::alpha(&s.draw()))
+    }),
+    Call::new("spherule_kernel::film::Accumulator::color", |s| {
+        seen(spherule_kernel::film::Accumulator::color(&s.draw()))
+    }),
+    Call::new("spherule_kernel::film::Accumulator::depth", |s| {
+        seen(spherule_kernel::film::Accumulator::depth(&s.draw()))
+    }),
+    Call::new("spherule_kernel::film::Accumulator::samples", |s| {
+        seen(spherule_kernel::film::Accumulator::samples(&s.draw()))
+    }),
+    Call::new(
+        "spherule_kernel::film::Accumulator::variance_of_mean",
+        |s| {
+            seen(spherule_kernel::film::Accumulator::variance_of_mean(
+                &s.draw(),
+            ))
+        },
+    ),
+    Call::new("spherule_kernel::film::Launch::blank", |s| {
+        seen(spherule_kernel::film::Launch::blank(&s.draw()))
+    }),
+    Call::new("spherule_kernel::film::Launch::pixel", |s| {
+        seen(spherule_kernel::film::Launch::pixel(
+            &s.draw(),
+            s.draw(),
+            &s.draw(),
+            s.draw(),
+            &s.many()[..],
+            &s.many()[..],
+            &s.many()[..],
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::film::Launch::ray", |s| {
+        seen(spherule_kernel::film::Launch::ray(
+            &s.draw(),
+            s.draw(),
+            &s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::film::Launch::unless_hit", |s| {
+        seen(spherule_kernel::film::Launch::unless_hit(
+            &s.draw(),
+            &s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::film::Pixel::color", |s| {
+        seen(spherule_kernel::film::Pixel::color(&s.draw()))
+    }),
+    Call::new("spherule_kernel::film::Pixel::depth", |s| {
+        seen(spherule_kernel::film::Pixel::depth(&s.draw()))
+    }),
+    Call::new("spherule_kernel::film::Pixel::is_hit", |s| {
+        seen(spherule_kernel::film::Pixel::is_hit(&s.draw()))
+    }),
+    Call::new("spherule_kernel::film::Pixel::is_written", |s| {
+        seen(spherule_kernel::film::Pixel::is_written(&s.draw()))
+    }),
+    Call::new("spherule_kernel::film::Pixel::new", |s| {
+        seen(spherule_kernel::film::Pixel::new(s.draw(), s.draw()))
+    }),
+    Call::new("spherule_kernel::film::render_pixel", |s| {
+        seen(spherule_kernel::film::render_pixel(
+            s.draw(),
+            s.draw(),
+            s.draw(),
+            &s.draw(),
+            s.draw::<odd::OddTree>().get(),
+            &s.many()[..],
+            &s.many()[..],
+            &s.many()[..],
+            s.draw(),
+            &s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::fog::Fog::phase", |s| {
+        seen(spherule_kernel::fog::Fog::phase(&s.draw(), s.draw()))
+    }),
+    Call::new("spherule_kernel::fog::Fog::sample", |s| {
+        seen(spherule_kernel::fog::Fog::sample(
+            &s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::fog::Fog::sample_distance", |s| {
+        seen(spherule_kernel::fog::Fog::sample_distance(
+            &s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::fog::Fog::span", |s| {
+        seen(spherule_kernel::fog::Fog::span(
+            &s.draw(),
+            s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::fog::Fog::transmittance", |s| {
+        seen(spherule_kernel::fog::Fog::transmittance(
+            &s.draw(),
+            s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::frustum::Frustum::around", |s| {
+        seen(spherule_kernel::frustum::Frustum::around(
+            &s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::frustum::Frustum::misses", |s| {
+        seen(spherule_kernel::frustum::Frustum::misses(
+            &s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::frustum::Frustum::within", |s| {
+        seen(spherule_kernel::frustum::Frustum::within(
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::frustum::Plane::around", |s| {
+        seen(spherule_kernel::frustum::Plane::around(
+            &s.draw(),
+            s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::frustum::Plane::from_vec4", |s| {
+        seen(spherule_kernel::frustum::Plane::from_vec4(s.draw()))
+    }),
+    Call::new("spherule_kernel::frustum::Plane::to_vec4", |s| {
+        seen(spherule_kernel::frustum::Plane::to_vec4(s.draw()))
+    }),
+    Call::new("spherule_kernel::hit::Hit as Default", |_| {
+        seen(<spherule_kernel::hit::Hit as Default>::default())
+    }),
+    Call::new("spherule_kernel::hit::Hit::is_some", |s| {
+        seen(spherule_kernel::hit::Hit::is_some(&s.draw()))
+    }),
+    Call::new("spherule_kernel::instructions::highest_bit", |s| {
+        seen(spherule_kernel::instructions::highest_bit(s.draw()))
+    }),
+    Call::new("spherule_kernel::instructions::inverse_root", |s| {
+        seen(spherule_kernel::instructions::inverse_root(s.draw()))
+    }),
+    Call::new("spherule_kernel::instructions::larger", |s| {
+        seen(spherule_kernel::instructions::larger(s.draw(), s.draw()))
+    }),
+    Call::new("spherule_kernel::instructions::lowest_bit", |s| {
+        seen(spherule_kernel::instructions::lowest_bit(s.draw()))
+    }),
+    Call::new("spherule_kernel::instructions::smaller", |s| {
+        seen(spherule_kernel::instructions::smaller(s.draw(), s.draw()))
+    }),
+    Call::new("spherule_kernel::integrate::luminance", |s| {
+        seen(spherule_kernel::integrate::luminance(s.draw()))
+    }),
+    Call::new("spherule_kernel::integrate::trace_pixel", |s| {
+        seen(spherule_kernel::integrate::trace_pixel(
+            &s.draw::<odd::OddScenery>().get(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::layout::write", |s| {
+        seen(spherule_kernel::layout::write(&mut s.many()[..]))
+    }),
+    Call::new("spherule_kernel::light::Light::environment", |_| {
+        seen(spherule_kernel::light::Light::environment())
+    }),
+    Call::new("spherule_kernel::light::Light::point", |s| {
+        seen(spherule_kernel::light::Light::point(s.draw(), s.draw()))
+    }),
+    Call::new("spherule_kernel::light::Light::sphere", |s| {
+        seen(spherule_kernel::light::Light::sphere(s.draw(), s.draw()))
+    }),
+    Call::new("spherule_kernel::light::Light::sun", |s| {
+        seen(spherule_kernel::light::Light::sun(
+            s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::light::sample_sphere", |s| {
+        seen(spherule_kernel::light::sample_sphere(
+            s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::light::solid_angle", |s| {
+        seen(spherule_kernel::light::solid_angle(s.draw()))
+    }),
+    Call::new("spherule_kernel::light::sphere_density", |s| {
+        seen(spherule_kernel::light::sphere_density(s.draw(), s.draw()))
+    }),
+    Call::new("spherule_kernel::material::Material::bubble", |s| {
+        seen(spherule_kernel::material::Material::bubble(
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::material::Material::diffuse", |s| {
+        seen(spherule_kernel::material::Material::diffuse(s.draw()))
+    }),
+    Call::new("spherule_kernel::material::Material::emissive", |s| {
+        seen(spherule_kernel::material::Material::emissive(s.draw()))
+    }),
+    Call::new("spherule_kernel::material::Material::glass", |s| {
+        seen(spherule_kernel::material::Material::glass(
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::material::Material::metal", |s| {
+        seen(spherule_kernel::material::Material::metal(
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::material::material_of", |s| {
+        seen(spherule_kernel::material::material_of(
+            s.draw(),
+            &s.many()[..],
+            &s.many()[..],
+        ))
+    }),
+    Call::new("spherule_kernel::microfacet::RoughMetal::evaluate", |s| {
+        seen(spherule_kernel::microfacet::RoughMetal::evaluate(
+            &s.draw(),
+            s.draw(),
+            &s.many()[..],
+        ))
+    }),
+    Call::new("spherule_kernel::microfacet::RoughMetal::new", |s| {
+        seen(spherule_kernel::microfacet::RoughMetal::new(
+            s.draw(),
+            s.draw(),
+            s.draw(),
+            &s.many()[..],
+        ))
+    }),
+    Call::new("spherule_kernel::microfacet::RoughMetal::sample", |s| {
+        seen(spherule_kernel::microfacet::RoughMetal::sample(
+            &s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::microfacet::albedo::Albedo::of", |s| {
+        seen(spherule_kernel::microfacet::Albedo::of(s.draw(), s.draw()))
+    }),
+    Call::new("spherule_kernel::microfacet::albedo::Albedo::table", |_| {
+        seen(spherule_kernel::microfacet::Albedo::table())
+    }),
+    Call::new("spherule_kernel::microfacet::sample_visible", |s| {
+        seen(spherule_kernel::microfacet::sample_visible(
+            s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::microfacet::schlick", |s| {
+        seen(spherule_kernel::microfacet::schlick(s.draw(), s.draw()))
+    }),
+    Call::new(
+        "spherule_kernel::nearest::MovingSpheres as spherule_kernel::nearest::Spheres::count",
+        |s| {
+            seen(<spherule_kernel::nearest::MovingSpheres as spherule_kernel::nearest::Spheres>::count(&s.draw::<odd::OddMovingSpheres>().get()))
+        },
+    ),
+    Call::new("spherule_kernel::nearest::MovingSpheres::read", |s| {
+        seen(spherule_kernel::nearest::MovingSpheres::read(
+            &s.draw::<odd::OddMovingSpheres>().get(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::nearest::is_occluded#0", |s| {
+        seen(spherule_kernel::nearest::is_occluded(
+            s.draw(),
+            &s.draw(),
+            &s.many::<spherule_kernel::Sphere>()[..],
+        ))
+    }),
+    Call::new("spherule_kernel::nearest::is_occluded#1", |s| {
+        seen(spherule_kernel::nearest::is_occluded(
+            s.draw(),
+            &s.draw(),
+            &s.draw::<odd::OddMovingSpheres>().get(),
+        ))
+    }),
+    Call::new("spherule_kernel::nearest::nearest_hit", |s| {
+        seen(spherule_kernel::nearest::nearest_hit(
+            &s.draw(),
+            &s.many()[..],
+        ))
+    }),
+    Call::new("spherule_kernel::nearest::nearest_hit_in#0", |s| {
+        seen(spherule_kernel::nearest::nearest_hit_in(
+            s.draw(),
+            &s.draw(),
+            &s.many::<spherule_kernel::Sphere>()[..],
+            s.draw(),
+            s.few(),
+        ))
+    }),
+    Call::new("spherule_kernel::nearest::nearest_hit_in#1", |s| {
+        seen(spherule_kernel::nearest::nearest_hit_in(
+            s.draw(),
+            &s.draw(),
+            &s.draw::<odd::OddMovingSpheres>().get(),
+            s.draw(),
+            s.few(),
+        ))
+    }),
+    Call::new("spherule_kernel::optics::Fresnel::refract", |s| {
+        seen(spherule_kernel::optics::Fresnel::refract(
+            s.draw(),
+            s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::optics::Incidence::fresnel", |s| {
+        seen(spherule_kernel::optics::Incidence::fresnel(s.draw()))
+    }),
+    Call::new(
+        "spherule_kernel::optics::Incidence::squared_cosine_transmitted",
+        |s| seen(spherule_kernel::optics::Incidence::squared_cosine_transmitted(s.draw())),
+    ),
+    Call::new("spherule_kernel::optics::reflect", |s| {
+        seen(spherule_kernel::optics::reflect(s.draw(), s.draw()))
+    }),
+    Call::new("spherule_kernel::precision::Rung::name", |s| {
+        seen(spherule_kernel::precision::Rung::name(s.draw()))
+    }),
+    Call::new("spherule_kernel::precision::Rung::to_u32", |s| {
+        seen(spherule_kernel::precision::Rung::to_u32(s.draw()))
+    }),
+    Call::new(
+        "spherule_kernel::precision::certified::Certified as spherule_kernel::precision::Precision::intersect",
+        |s| {
+            seen(<spherule_kernel::precision::certified::Certified as spherule_kernel::precision::Precision>::intersect(s.draw(), &s.draw()))
+        },
+    ),
+    Call::new(
+        "spherule_kernel::precision::certified::intersect_with_stage",
+        |s| {
+            seen(spherule_kernel::precision::certified::intersect_with_stage(
+                s.draw(),
+                &s.draw(),
+            ))
+        },
+    ),
+    Call::new("spherule_kernel::precision::choose_root", |s| {
+        seen(spherule_kernel::precision::choose_root(
+            s.draw(),
+            s.draw(),
+            &s.draw(),
+        ))
+    }),
+    Call::new(
+        "spherule_kernel::precision::compensated::Compensated as spherule_kernel::precision::Precision::intersect",
+        |s| {
+            seen(<spherule_kernel::precision::compensated::Compensated as spherule_kernel::precision::Precision>::intersect(s.draw(), &s.draw()))
+        },
+    ),
+    Call::new(
+        "spherule_kernel::precision::compensated::Quadratic::c_is_certain",
+        |s| seen(spherule_kernel::precision::compensated::Quadratic::c_is_certain(&s.draw())),
+    ),
+    Call::new(
+        "spherule_kernel::precision::compensated::Quadratic::misses_for_certain",
+        |s| seen(spherule_kernel::precision::compensated::Quadratic::misses_for_certain(&s.draw())),
+    ),
+    Call::new(
+        "spherule_kernel::precision::compensated::Quadratic::of",
+        |s| {
+            seen(spherule_kernel::precision::compensated::Quadratic::of(
+                s.draw(),
+                &s.draw(),
+            ))
+        },
+    ),
+    Call::new(
+        "spherule_kernel::precision::compensated::Quadratic::roots",
+        |s| {
+            seen(spherule_kernel::precision::compensated::Quadratic::roots(
+                &s.draw(),
+            ))
+        },
+    ),
+    Call::new(
+        "spherule_kernel::precision::compensated::Quadratic::size_is_certain",
+        |s| seen(spherule_kernel::precision::compensated::Quadratic::size_is_certain(&s.draw())),
+    ),
+    Call::new(
+        "spherule_kernel::precision::double::Double as spherule_kernel::precision::Precision::intersect",
+        |s| {
+            seen(<spherule_kernel::precision::double::Double as spherule_kernel::precision::Precision>::intersect(s.draw(), &s.draw()))
+        },
+    ),
+    Call::new("spherule_kernel::precision::double::quotient", |s| {
+        seen(spherule_kernel::precision::double::quotient(
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::precision::double::square_root", |s| {
+        seen(spherule_kernel::precision::double::square_root(s.draw()))
+    }),
+    Call::new("spherule_kernel::precision::intersect", |s| {
+        seen(spherule_kernel::precision::intersect(
+            s.draw(),
+            s.draw(),
+            &s.draw(),
+        ))
+    }),
+    Call::new(
+        "spherule_kernel::precision::robust::Robust as spherule_kernel::precision::Precision::intersect",
+        |s| {
+            seen(<spherule_kernel::precision::robust::Robust as spherule_kernel::precision::Precision>::intersect(s.draw(), &s.draw()))
+        },
+    ),
+    Call::new(
+        "spherule_kernel::precision::textbook::Textbook as spherule_kernel::precision::Precision::intersect",
+        |s| {
+            seen(<spherule_kernel::precision::textbook::Textbook as spherule_kernel::precision::Precision>::intersect(s.draw(), &s.draw()))
+        },
+    ),
+    Call::new("spherule_kernel::random::Sampler::new", |s| {
+        seen(spherule_kernel::random::Sampler::new(
+            s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::random::Sampler::pair", |s| {
+        seen(spherule_kernel::random::Sampler::pair(&s.draw(), s.draw()))
+    }),
+    Call::new("spherule_kernel::random::Sampler::single", |s| {
+        seen(spherule_kernel::random::Sampler::single(
+            &s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::ray::Ray::at", |s| {
+        seen(spherule_kernel::ray::Ray::at(&s.draw(), s.draw()))
+    }),
+    Call::new("spherule_kernel::ray::Ray::end", |s| {
+        seen(spherule_kernel::ray::Ray::end(&s.draw()))
+    }),
+    Call::new("spherule_kernel::ray::Ray::new", |s| {
+        seen(spherule_kernel::ray::Ray::new(s.draw(), s.draw()))
+    }),
+    Call::new("spherule_kernel::ray::Ray::within", |s| {
+        seen(spherule_kernel::ray::Ray::within(
+            s.draw(),
+            s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::sampling::cone", |s| {
+        seen(spherule_kernel::sampling::cone(
+            s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::sampling::cone_density", |s| {
+        seen(spherule_kernel::sampling::cone_density(s.draw()))
+    }),
+    Call::new("spherule_kernel::sampling::cosine_density", |s| {
+        seen(spherule_kernel::sampling::cosine_density(s.draw()))
+    }),
+    Call::new("spherule_kernel::sampling::cosine_hemisphere", |s| {
+        seen(spherule_kernel::sampling::cosine_hemisphere(
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::sampling::disc", |s| {
+        seen(spherule_kernel::sampling::disc(s.draw()))
+    }),
+    Call::new("spherule_kernel::sampling::power_heuristic", |s| {
+        seen(spherule_kernel::sampling::power_heuristic(
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::sampling::tangents", |s| {
+        seen(spherule_kernel::sampling::tangents(s.draw()))
+    }),
+    Call::new("spherule_kernel::sampling::uniform_sphere", |s| {
+        seen(spherule_kernel::sampling::uniform_sphere(s.draw()))
+    }),
+    Call::new("spherule_kernel::shading::Shading::is_data", |s| {
+        seen(spherule_kernel::shading::Shading::is_data(s.draw()))
+    }),
+    Call::new("spherule_kernel::shading::Shading::to_u32", |s| {
+        seen(spherule_kernel::shading::Shading::to_u32(s.draw()))
+    }),
+    Call::new("spherule_kernel::shading::shade", |s| {
+        seen(spherule_kernel::shading::shade(
+            s.draw(),
+            &s.draw(),
+            s.draw(),
+            &s.draw(),
+            &s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::sky::Sky::environment_density", |s| {
+        seen(spherule_kernel::sky::Sky::environment_density(
+            &s.draw(),
+            s.draw(),
+            &s.many()[..],
+        ))
+    }),
+    Call::new("spherule_kernel::sky::Sky::is_sun", |s| {
+        seen(spherule_kernel::sky::Sky::is_sun(&s.draw(), s.draw()))
+    }),
+    Call::new("spherule_kernel::sky::Sky::radiance", |s| {
+        seen(spherule_kernel::sky::Sky::radiance(
+            &s.draw(),
+            s.draw(),
+            s.draw(),
+            &s.many()[..],
+        ))
+    }),
+    Call::new("spherule_kernel::sky::Sky::sample_environment", |s| {
+        seen(spherule_kernel::sky::Sky::sample_environment(
+            &s.draw(),
+            s.draw(),
+            &s.many()[..],
+        ))
+    }),
+    Call::new("spherule_kernel::sphere::Sphere::center", |s| {
+        seen(spherule_kernel::sphere::Sphere::center(&s.draw()))
+    }),
+    Call::new("spherule_kernel::sphere::Sphere::contains", |s| {
+        seen(spherule_kernel::sphere::Sphere::contains(
+            &s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::sphere::Sphere::intersect", |s| {
+        seen(spherule_kernel::sphere::Sphere::intersect(
+            &s.draw(),
+            &s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::sphere::Sphere::is_valid", |s| {
+        seen(spherule_kernel::sphere::Sphere::is_valid(&s.draw()))
+    }),
+    Call::new("spherule_kernel::sphere::Sphere::new", |s| {
+        seen(spherule_kernel::sphere::Sphere::new(s.draw(), s.draw()))
+    }),
+    Call::new("spherule_kernel::sphere::Sphere::radius", |s| {
+        seen(spherule_kernel::sphere::Sphere::radius(&s.draw()))
+    }),
+    Call::new("spherule_kernel::sphere::Sphere::to_vec4", |s| {
+        seen(spherule_kernel::sphere::Sphere::to_vec4(s.draw()))
+    }),
+    Call::new("spherule_kernel::surface::Surface::at", |s| {
+        seen(spherule_kernel::surface::Surface::at(
+            &s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::surface::Surface::leave", |s| {
+        seen(spherule_kernel::surface::Surface::leave(
+            &s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::surface::unit", |s| {
+        seen(spherule_kernel::surface::unit(s.draw()))
+    }),
+    Call::new("spherule_kernel::throughput::products", |s| {
+        seen(spherule_kernel::throughput::products(
+            s.draw(),
+            s.draw(),
+            s.few(),
+        ))
+    }),
+    Call::new(
+        "spherule_kernel::traversal::OneByOne as spherule_kernel::traversal::Traversal::is_occluded",
+        |s| {
+            seen(<spherule_kernel::traversal::OneByOne as spherule_kernel::traversal::Traversal>::is_occluded(&s.draw::<odd::OddOneByOne>().get(), &s.draw(), &s.draw::<odd::OddMovingSpheres>().get()))
+        },
+    ),
+    Call::new(
+        "spherule_kernel::traversal::OneByOne as spherule_kernel::traversal::Traversal::nearest_hit",
+        |s| {
+            seen(<spherule_kernel::traversal::OneByOne as spherule_kernel::traversal::Traversal>::nearest_hit(&s.draw::<odd::OddOneByOne>().get(), &s.draw(), &s.draw::<odd::OddMovingSpheres>().get()))
+        },
+    ),
+    Call::new("spherule_kernel::tree::Extent::of_node", |s| {
+        seen(spherule_kernel::tree::Extent::of_node(&s.draw()))
+    }),
+    Call::new("spherule_kernel::tree::Extent::to_node", |s| {
+        seen(spherule_kernel::tree::Extent::to_node(s.draw()))
+    }),
+    Call::new("spherule_kernel::tree::Extent::widening", |s| {
+        seen(spherule_kernel::tree::Extent::widening(
+            &s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::tree::Node::all_spheres", |s| {
+        seen(spherule_kernel::tree::Node::all_spheres(&s.draw()))
+    }),
+    Call::new("spherule_kernel::tree::Node::child", |s| {
+        seen(spherule_kernel::tree::Node::child(&s.draw(), s.draw()))
+    }),
+    Call::new("spherule_kernel::tree::Node::has_nodes", |s| {
+        seen(spherule_kernel::tree::Node::has_nodes(&s.draw()))
+    }),
+    Call::new("spherule_kernel::tree::Node::is_node", |s| {
+        seen(spherule_kernel::tree::Node::is_node(&s.draw(), s.draw()))
+    }),
+    Call::new("spherule_kernel::tree::Node::leaf", |s| {
+        seen(spherule_kernel::tree::Node::leaf(&s.draw(), s.draw()))
+    }),
+    Call::new("spherule_kernel::tree::Node::lower", |s| {
+        seen(spherule_kernel::tree::Node::lower(s.draw()))
+    }),
+    Call::new("spherule_kernel::tree::Node::upper", |s| {
+        seen(spherule_kernel::tree::Node::upper(s.draw()))
+    }),
+    Call::new("spherule_kernel::tree::Slabs::of", |s| {
+        seen(spherule_kernel::tree::Slabs::of(
+            s.draw(),
+            &s.draw(),
+            &s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::tree::Slabs::widened_end", |s| {
+        seen(spherule_kernel::tree::Slabs::widened_end(s.draw()))
+    }),
+    Call::new("spherule_kernel::tree::Tree::is_none", |s| {
+        seen(spherule_kernel::tree::Tree::is_none(
+            s.draw::<odd::OddTree>().get(),
+        ))
+    }),
+    Call::new("spherule_kernel::tree::Tree::nodes", |s| {
+        seen(spherule_kernel::tree::Tree::nodes(
+            s.draw::<odd::OddTree>().get(),
+        ))
+    }),
+    Call::new("spherule_kernel::tree::Tree::of", |s| {
+        seen(spherule_kernel::tree::Tree::of(&s.many()[..]))
+    }),
+    Call::new("spherule_kernel::tree::is_occluded_in_tree#0", |s| {
+        seen(spherule_kernel::tree::is_occluded_in_tree(
+            s.draw(),
+            &s.draw(),
+            s.draw::<odd::OddTree>().get(),
+            &s.many::<spherule_kernel::Sphere>()[..],
+        ))
+    }),
+    Call::new("spherule_kernel::tree::is_occluded_in_tree#1", |s| {
+        seen(spherule_kernel::tree::is_occluded_in_tree(
+            s.draw(),
+            &s.draw(),
+            s.draw::<odd::OddTree>().get(),
+            &s.draw::<odd::OddMovingSpheres>().get(),
+        ))
+    }),
+    Call::new("spherule_kernel::tree::nearest_hit_in_tree#0", |s| {
+        seen(spherule_kernel::tree::nearest_hit_in_tree(
+            s.draw(),
+            &s.draw(),
+            s.draw::<odd::OddTree>().get(),
+            &s.many::<spherule_kernel::Sphere>()[..],
+        ))
+    }),
+    Call::new("spherule_kernel::tree::nearest_hit_in_tree#1", |s| {
+        seen(spherule_kernel::tree::nearest_hit_in_tree(
+            s.draw(),
+            &s.draw(),
+            s.draw::<odd::OddTree>().get(),
+            &s.draw::<odd::OddMovingSpheres>().get(),
+        ))
+    }),
+    Call::new("spherule_kernel::tree::work_in_tree#0", |s| {
+        seen(spherule_kernel::tree::work_in_tree(
+            s.draw(),
+            s.draw(),
+            &s.draw(),
+            s.draw::<odd::OddTree>().get(),
+            &s.many::<spherule_kernel::Sphere>()[..],
+        ))
+    }),
+    Call::new("spherule_kernel::tree::work_in_tree#1", |s| {
+        seen(spherule_kernel::tree::work_in_tree(
+            s.draw(),
+            s.draw(),
+            &s.draw(),
+            s.draw::<odd::OddTree>().get(),
+            &s.draw::<odd::OddMovingSpheres>().get(),
+        ))
+    }),
+    Call::new("spherule_kernel::walk::walk_inside", |s| {
+        seen(spherule_kernel::walk::walk_inside(
+            s.draw(),
+            &s.draw(),
+            s.draw(),
+            s.draw(),
+            s.few(),
+        ))
+    }),
+];
+
+impl Odd for spherule::accuracy::canary::Canary {
+    fn odd(s: &mut Source) -> Self {
+        spherule::accuracy::canary::Canary {
+            sums: Odd::odd(s),
+            products: Odd::odd(s),
+            splits: Odd::odd(s),
+            quotients: Odd::odd(s),
+            quotient_ulps: Odd::odd(s),
+            roots: Odd::odd(s),
+            root_ulps: Odd::odd(s),
+            finds_nan: Odd::odd(s),
+            keeps_subnormals: Odd::odd(s),
+            wide: Odd::odd(s),
+        }
+    }
+}
+
+impl Odd for spherule::accuracy::canary::Share {
+    fn odd(s: &mut Source) -> Self {
+        spherule::accuracy::canary::Share {
+            exact: Odd::odd(s),
+            tried: Odd::odd(s),
+        }
+    }
+}
+
+impl Odd for spherule::accuracy::cases::Verdict {
+    fn odd(s: &mut Source) -> Self {
+        match s.below(3) {
+            0 => spherule::accuracy::cases::Verdict::Holds,
+            1 => spherule::accuracy::cases::Verdict::FailsUnpromised(Odd::odd(s)),
+            _ => spherule::accuracy::cases::Verdict::Fails(Odd::odd(s)),
+        }
+    }
+}
+
+impl Odd for spherule::accuracy::families::Family {
+    fn odd(s: &mut Source) -> Self {
+        match s.below(6) {
+            0 => spherule::accuracy::families::Family::Generic,
+            1 => spherule::accuracy::families::Family::Far,
+            2 => spherule::accuracy::families::Family::Ground,
+            3 => spherule::accuracy::families::Family::Tangent,
+            4 => spherule::accuracy::families::Family::Surface,
+            _ => spherule::accuracy::families::Family::Inside,
+        }
+    }
+}
+
+impl Odd for spherule::accuracy::frames::Frame {
+    fn odd(s: &mut Source) -> Self {
+        spherule::accuracy::frames::Frame {
+            rung: Odd::odd(s),
+            milliseconds: Odd::odd(s),
+            fastest: Odd::odd(s),
+            slowest: Odd::odd(s),
+            differing: Odd::odd(s),
+            pixels: Odd::odd(s),
+            flip: Odd::odd(s),
+        }
+    }
+}
+
+impl Odd for spherule::accuracy::measure::Escalation {
+    fn odd(s: &mut Source) -> Self {
+        spherule::accuracy::measure::Escalation {
+            filter: Odd::odd(s),
+            pairs: Odd::odd(s),
+            distilled_c: Odd::odd(s),
+            distilled: Odd::odd(s),
+            in_a_scene: Odd::odd(s),
+        }
+    }
+}
+
+impl Odd for spherule::accuracy::measure::Measured {
+    fn odd(s: &mut Source) -> Self {
+        spherule::accuracy::measure::Measured {
+            rays: Odd::odd(s),
+            hits: Odd::odd(s),
+            false_hits: Odd::odd(s),
+            false_misses: Odd::odd(s),
+            margin: Odd::odd(s),
+            max_ulp: Odd::odd(s),
+            max_ulp_anywhere: Odd::odd(s),
+            over_4_ulp: Odd::odd(s),
+            normal_degrees: Odd::odd(s),
+            histogram: Odd::odd(s),
+            worst: Odd::odd(s),
+        }
+    }
+}
+
+impl Odd for spherule::accuracy::measure::Worst {
+    fn odd(s: &mut Source) -> Self {
+        spherule::accuracy::measure::Worst {
+            ray: Odd::odd(s),
+            sphere: Odd::odd(s),
+            found: Odd::odd(s),
+            truth: Odd::odd(s),
+        }
+    }
+}
+
+impl Odd for spherule::accuracy::oracle::Root {
+    fn odd(s: &mut Source) -> Self {
+        match s.below(2) {
+            0 => spherule::accuracy::oracle::Root::Near,
+            _ => spherule::accuracy::oracle::Root::Far,
+        }
+    }
+}
+
+impl Odd for spherule::accuracy::price::Price {
+    fn odd(s: &mut Source) -> Self {
+        spherule::accuracy::price::Price {
+            nanoseconds: Odd::odd(s),
+            fastest: Odd::odd(s),
+            slowest: Odd::odd(s),
+        }
+    }
+}
+
+impl Odd for spherule::accuracy::samples::Step {
+    fn odd(s: &mut Source) -> Self {
+        spherule::accuracy::samples::Step {
+            rung: Odd::odd(s),
+            samples: Odd::odd(s),
+            milliseconds: Odd::odd(s),
+            error: Odd::odd(s),
+            estimate: Odd::odd(s),
+            flip: Odd::odd(s),
+        }
+    }
+}
+
+impl Odd for spherule::bench::limit::Limit {
+    fn odd(s: &mut Source) -> Self {
+        spherule::bench::limit::Limit {
+            operations_per_s: Odd::odd(s),
+            bytes_per_s: Odd::odd(s),
+        }
+    }
+}
+
+impl Odd for spherule::bench::rays::Kind {
+    fn odd(s: &mut Source) -> Self {
+        match s.below(4) {
+            0 => spherule::bench::rays::Kind::Primary,
+            1 => spherule::bench::rays::Kind::Shadow,
+            2 => spherule::bench::rays::Kind::Ambient,
+            _ => spherule::bench::rays::Kind::Incoherent,
+        }
+    }
+}
+
+impl Odd for spherule::bench::rays::RaySets {
+    fn odd(s: &mut Source) -> Self {
+        spherule::bench::rays::RaySets {
+            primary: Odd::odd(s),
+            shadow: Odd::odd(s),
+            ambient: Odd::odd(s),
+            incoherent: Odd::odd(s),
+        }
+    }
+}
+
+impl Odd for spherule::device::adapter::DeviceChoice {
+    fn odd(s: &mut Source) -> Self {
+        match s.below(4) {
+            0 => spherule::device::adapter::DeviceChoice::Auto,
+            1 => spherule::device::adapter::DeviceChoice::Gpu,
+            2 => spherule::device::adapter::DeviceChoice::Cpu,
+            _ => spherule::device::adapter::DeviceChoice::Named(Odd::odd(s)),
+        }
+    }
+}
+
+impl Odd for spherule::device::gpu::Access {
+    fn odd(s: &mut Source) -> Self {
+        match s.below(3) {
+            0 => spherule::device::gpu::Access::Uniform,
+            1 => spherule::device::gpu::Access::Read,
+            _ => spherule::device::gpu::Access::ReadWrite,
+        }
+    }
+}
+
+impl Odd for spherule::device::gpu::LaunchTime {
+    fn odd(s: &mut Source) -> Self {
+        spherule::device::gpu::LaunchTime {
+            device: Odd::odd(s),
+            host: Odd::odd(s),
+        }
+    }
+}
+
+impl Odd for spherule::error::Error {
+    fn odd(s: &mut Source) -> Self {
+        match s.below(13) {
+            0 => spherule::error::Error::NoAdapter {
+                wanted: Odd::odd(s),
+                found: Odd::odd(s),
+            },
+            1 => spherule::error::Error::DeviceRefused {
+                adapter: Odd::odd(s),
+                reason: Odd::odd(s),
+            },
+            2 => spherule::error::Error::KernelInvalid {
+                kernel: Odd::odd(s),
+                reason: Odd::odd(s),
+            },
+            3 => spherule::error::Error::BufferTooLarge {
+                label: Odd::odd(s),
+                needed: Odd::odd(s),
+                limit: Odd::odd(s),
+                device: Odd::odd(s),
+            },
+            4 => spherule::error::Error::OutOfMemory {
+                device: Odd::odd(s),
+                during: Odd::odd(s),
+            },
+            5 => spherule::error::Error::LaunchLimits {
+                kernel: Odd::odd(s),
+                device: Odd::odd(s),
+                what: Odd::odd(s),
+                asked: Odd::odd(s),
+                limit: Odd::odd(s),
+            },
+            6 => spherule::error::Error::Validation {
+                during: Odd::odd(s),
+                reason: Odd::odd(s),
+            },
+            7 => spherule::error::Error::DeviceLost {
+                device: Odd::odd(s),
+                during: Odd::odd(s),
+                reason: Odd::odd(s),
+            },
+            8 => spherule::error::Error::Timeout {
+                device: Odd::odd(s),
+                during: Odd::odd(s),
+                limit: Odd::odd(s),
+            },
+            9 => spherule::error::Error::RungRefused {
+                rung: Odd::odd(s),
+                device: Odd::odd(s),
+                reason: Odd::odd(s),
+            },
+            10 => spherule::error::Error::Readback {
+                what: Odd::odd(s),
+                device: Odd::odd(s),
+                reason: Odd::odd(s),
+            },
+            11 => spherule::error::Error::Scene(Odd::odd(s)),
+            _ => spherule::error::Error::Image {
+                path: Odd::odd(s),
+                reason: Odd::odd(s),
+                help: Odd::odd(s),
+            },
+        }
+    }
+}
+
+impl Odd for spherule::error::Place {
+    fn odd(s: &mut Source) -> Self {
+        spherule::error::Place {
+            text: Odd::odd(s),
+            span: Odd::odd(s),
+            label: Odd::odd(s),
+        }
+    }
+}
+
+impl Odd for spherule::error::SceneError {
+    fn odd(s: &mut Source) -> Self {
+        spherule::error::SceneError {
+            path: Odd::odd(s),
+            message: Odd::odd(s),
+            help: Odd::odd(s),
+            place: Odd::odd(s),
+        }
+    }
+}
+
+impl Odd for spherule::film::compare::Comparison {
+    fn odd(s: &mut Source) -> Self {
+        spherule::film::compare::Comparison {
+            largest: Odd::odd(s),
+            mean: Odd::odd(s),
+            differing: Odd::odd(s),
+            pixels: Odd::odd(s),
+            tolerance: Odd::odd(s),
+        }
+    }
+}
+
+impl Odd for spherule::film::compare::Tolerance {
+    fn odd(s: &mut Source) -> Self {
+        spherule::film::compare::Tolerance {
+            channel: Odd::odd(s),
+            share: Odd::odd(s),
+        }
+    }
+}
+
+impl Odd for spherule::render::Settings {
+    fn odd(s: &mut Source) -> Self {
+        spherule::render::Settings {
+            shading: Odd::odd(s),
+            rung: Odd::odd(s),
+            acceleration: Odd::odd(s),
+            effects: Odd::odd(s),
+            time_limit: Odd::odd(s),
+            noise: Odd::odd(s),
+        }
+    }
+}
+
+impl Odd for spherule::render::paths::EffectChoice {
+    fn odd(s: &mut Source) -> Self {
+        match s.below(3) {
+            0 => spherule::render::paths::EffectChoice::Auto,
+            1 => spherule::render::paths::EffectChoice::All,
+            _ => spherule::render::paths::EffectChoice::Only(Odd::odd(s)),
+        }
+    }
+}
+
+impl Odd for spherule::scene::limits::Range {
+    fn odd(s: &mut Source) -> Self {
+        spherule::scene::limits::Range {
+            low: Odd::odd(s),
+            high: Odd::odd(s),
+        }
+    }
+}
+
+impl Odd for spherule::scene::molecule::Atom {
+    fn odd(s: &mut Source) -> Self {
+        spherule::scene::molecule::Atom {
+            position: Odd::odd(s),
+            element: Odd::odd(s),
+        }
+    }
+}
+
+impl Odd for spherule::scene::surroundings::Sun {
+    fn odd(s: &mut Source) -> Self {
+        spherule::scene::surroundings::Sun {
+            direction: Odd::odd(s),
+            size: Odd::odd(s),
+            irradiance: Odd::odd(s),
+        }
+    }
+}
+
+impl Odd for spherule::scene::tree::Acceleration {
+    fn odd(s: &mut Source) -> Self {
+        match s.below(3) {
+            0 => spherule::scene::tree::Acceleration::Auto,
+            1 => spherule::scene::tree::Acceleration::Tree,
+            _ => spherule::scene::tree::Acceleration::BruteForce,
+        }
+    }
+}
+
+impl Odd for spherule::scene::view::View {
+    fn odd(s: &mut Source) -> Self {
+        spherule::scene::view::View {
+            eye: Odd::odd(s),
+            target: Odd::odd(s),
+            up: Odd::odd(s),
+            vertical_fov: Odd::odd(s),
+        }
+    }
+}
+
+impl Odd for spherule_kernel::arithmetic::double_single::DoubleSingle {
+    fn odd(s: &mut Source) -> Self {
+        spherule_kernel::arithmetic::double_single::DoubleSingle {
+            high: Odd::odd(s),
+            low: Odd::odd(s),
+        }
+    }
+}
+
+impl Odd for spherule_kernel::bounds::Bounds {
+    fn odd(s: &mut Source) -> Self {
+        spherule_kernel::bounds::Bounds {
+            misses: Odd::odd(s),
+            hits: Odd::odd(s),
+            low: Odd::odd(s),
+            high: Odd::odd(s),
+        }
+    }
+}
+
+impl Odd for spherule_kernel::bounds::Line {
+    fn odd(s: &mut Source) -> Self {
+        spherule_kernel::bounds::Line {
+            origin: Odd::odd(s),
+            direction: Odd::odd(s),
+            a: Odd::odd(s),
+            inverse: Odd::odd(s),
+            unit: Odd::odd(s),
+            start: Odd::odd(s),
+            behind: Odd::odd(s),
+        }
+    }
+}
+
+impl Odd for spherule_kernel::canary::Operands {
+    fn odd(s: &mut Source) -> Self {
+        spherule_kernel::canary::Operands {
+            a: Odd::odd(s),
+            b: Odd::odd(s),
+        }
+    }
+}
+
+impl Odd for spherule_kernel::film::Launch {
+    fn odd(s: &mut Source) -> Self {
+        spherule_kernel::film::Launch {
+            camera: Odd::odd(s),
+            background: Odd::odd(s),
+            first_of_tile: Odd::odd(s),
+            image_size: Odd::odd(s),
+            tile_origin: Odd::odd(s),
+            tile_size: Odd::odd(s),
+            first_sphere: Odd::odd(s),
+            sphere_count: Odd::odd(s),
+        }
+    }
+}
+
+impl Odd for spherule_kernel::film::PathLaunch {
+    fn odd(s: &mut Source) -> Self {
+        spherule_kernel::film::PathLaunch {
+            camera: Odd::odd(s),
+            image_size: Odd::odd(s),
+            tile_origin: Odd::odd(s),
+            tile_size: Odd::odd(s),
+            first_sample: Odd::odd(s),
+            sample_count: Odd::odd(s),
+            seed: Odd::odd(s),
+            max_bounces: Odd::odd(s),
+            lens_radius: Odd::odd(s),
+            focus_distance: Odd::odd(s),
+            shutter_open: Odd::odd(s),
+            shutter_close: Odd::odd(s),
+            ambient_distance: Odd::odd(s),
+            sphere_light_probability: Odd::odd(s),
+            called_effects: Odd::odd(s),
+            has_ambient_sky: Odd::odd(s),
+            padding: Odd::odd(s),
+            sky: Odd::odd(s),
+            fog: Odd::odd(s),
+        }
+    }
+}
+
+impl Odd for spherule_kernel::fog::Fog {
+    fn odd(s: &mut Source) -> Self {
+        spherule_kernel::fog::Fog {
+            center: Odd::odd(s),
+            radius: Odd::odd(s),
+            albedo: Odd::odd(s),
+            extinction: Odd::odd(s),
+            anisotropy: Odd::odd(s),
+            padding: Odd::odd(s),
+            padding_end: Odd::odd(s),
+        }
+    }
+}
+
+impl Odd for spherule_kernel::hit::Hit {
+    fn odd(s: &mut Source) -> Self {
+        spherule_kernel::hit::Hit {
+            t: Odd::odd(s),
+            sphere: Odd::odd(s),
+        }
+    }
+}
+
+impl Odd for spherule_kernel::light::Light {
+    fn odd(s: &mut Source) -> Self {
+        spherule_kernel::light::Light {
+            position: Odd::odd(s),
+            kind: Odd::odd(s),
+            color: Odd::odd(s),
+            cumulative: Odd::odd(s),
+            probability: Odd::odd(s),
+            sphere: Odd::odd(s),
+            height: Odd::odd(s),
+            padding: Odd::odd(s),
+        }
+    }
+}
+
+impl Odd for spherule_kernel::optics::Fresnel {
+    fn odd(s: &mut Source) -> Self {
+        spherule_kernel::optics::Fresnel {
+            reflectance: Odd::odd(s),
+            cosine_transmitted: Odd::odd(s),
+        }
+    }
+}
+
+impl Odd for spherule_kernel::optics::Incidence {
+    fn odd(s: &mut Source) -> Self {
+        spherule_kernel::optics::Incidence {
+            cosine: Odd::odd(s),
+            eta: Odd::odd(s),
+        }
+    }
+}
+
+impl Odd for spherule_kernel::precision::Rung {
+    fn odd(s: &mut Source) -> Self {
+        match s.below(5) {
+            0 => spherule_kernel::precision::Rung::Textbook,
+            1 => spherule_kernel::precision::Rung::Robust,
+            2 => spherule_kernel::precision::Rung::Compensated,
+            3 => spherule_kernel::precision::Rung::Double,
+            _ => spherule_kernel::precision::Rung::Certified,
+        }
+    }
+}
+
+impl Odd for spherule_kernel::precision::compensated::Quadratic {
+    fn odd(s: &mut Source) -> Self {
+        spherule_kernel::precision::compensated::Quadratic {
+            o: Odd::odd(s),
+            d: Odd::odd(s),
+            r: Odd::odd(s),
+            a: Odd::odd(s),
+            b: Odd::odd(s),
+            c: Odd::odd(s),
+            discriminant: Odd::odd(s),
+            k_squared: Odd::odd(s),
+            length_scale: Odd::odd(s),
+            direction_scale: Odd::odd(s),
+        }
+    }
+}
+
+impl Odd for spherule_kernel::ray::Ray {
+    fn odd(s: &mut Source) -> Self {
+        spherule_kernel::ray::Ray {
+            origin: Odd::odd(s),
+            t_min: Odd::odd(s),
+            direction: Odd::odd(s),
+            t_max: Odd::odd(s),
+        }
+    }
+}
+
+impl Odd for spherule_kernel::shading::Shading {
+    fn odd(s: &mut Source) -> Self {
+        match s.below(4) {
+            0 => spherule_kernel::shading::Shading::Lit,
+            1 => spherule_kernel::shading::Shading::Normals,
+            2 => spherule_kernel::shading::Shading::Depth,
+            _ => spherule_kernel::shading::Shading::Flat,
+        }
+    }
+}
+
+impl Odd for spherule_kernel::sky::Sky {
+    fn odd(s: &mut Source) -> Self {
+        spherule_kernel::sky::Sky {
+            horizon: Odd::odd(s),
+            environment_probability: Odd::odd(s),
+            zenith: Odd::odd(s),
+            sun_probability: Odd::odd(s),
+            sun_direction: Odd::odd(s),
+            sun_height: Odd::odd(s),
+            sun_radiance: Odd::odd(s),
+            padding: Odd::odd(s),
+            environment_size: Odd::odd(s),
+            padding_end: Odd::odd(s),
+        }
+    }
+}
+
+impl Odd for spherule_kernel::surface::Surface {
+    fn odd(s: &mut Source) -> Self {
+        spherule_kernel::surface::Surface {
+            point: Odd::odd(s),
+            normal: Odd::odd(s),
+            error: Odd::odd(s),
+        }
+    }
+}
+
+impl Odd for spherule_kernel::tree::Extent {
+    fn odd(s: &mut Source) -> Self {
+        spherule_kernel::tree::Extent {
+            low: Odd::odd(s),
+            high: Odd::odd(s),
+            smallest_radius: Odd::odd(s),
+        }
+    }
+}
+
+impl Odd for spherule_kernel::tree::Node {
+    fn odd(s: &mut Source) -> Self {
+        spherule_kernel::tree::Node {
+            sides: Odd::odd(s),
+            corner: Odd::odd(s),
+            links: Odd::odd(s),
+        }
+    }
+}
