@@ -43,7 +43,7 @@ fn main() -> spherule::Result<()> {
             *pixel = Pixel::new(Vec3::X, t);
         }
     }
-    Image::new(size.x, size.y, Shading::Flat, pixels).save("step1.png")?;
+    Image::new(size.x, size.y, Shading::Flat, pixels)?.save("step1.png")?;
     println!("wrote step1.png");
     Ok(())
 }

@@ -65,7 +65,7 @@ fn main() -> spherule::Result<()> {
             t => Pixel::new(Vec3::X, t),
         })
         .collect();
-    Image::new(size.x, size.y, Shading::Flat, pixels).save("step2.png")?;
+    Image::new(size.x, size.y, Shading::Flat, pixels)?.save("step2.png")?;
     println!("wrote step2.png");
     Ok(())
 }

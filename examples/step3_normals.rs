@@ -30,7 +30,7 @@ fn main() -> spherule::Result<()> {
             Pixel::new(surface.normal * 0.5 + 0.5, t)
         })
         .collect();
-    Image::new(size.x, size.y, Shading::Normals, pixels).save("step3.png")?;
+    Image::new(size.x, size.y, Shading::Normals, pixels)?.save("step3.png")?;
     println!("wrote step3.png");
     Ok(())
 }

@@ -789,7 +789,8 @@ fn each_effect_is_called_for_by_its_key() {
 fn light_is_developed() {
     let pixel = |light: f32| spherule::kernel::Pixel::new(Vec3::splat(light), 1.0);
     let shown = |tonemap, exposure, light: f32| {
-        let mut image = Image::new(1, 1, spherule::kernel::Shading::Lit, vec![pixel(light)]);
+        let mut image =
+            Image::new(1, 1, spherule::kernel::Shading::Lit, vec![pixel(light)]).expect("an image");
         image.develop.tonemap = tonemap;
         image.develop.exposure = exposure;
         image.to_rgb8()[0]

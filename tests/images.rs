@@ -168,7 +168,8 @@ fn wrong_figures_do_not_match() {
                     Pixel::new(Vec3::new(color.z, color.y, color.x), pixel.depth())
                 })
                 .collect();
-            let swapped = Image::new(image.width(), image.height(), shading, swapped);
+            let swapped =
+                Image::new(image.width(), image.height(), shading, swapped).expect("an image");
             let difference = flip(&swapped, &reference);
             assert!(difference > FLIP_TOLERANCE, "{name} swapped: {difference}");
         }
@@ -210,7 +211,7 @@ fn the_stated_tolerance_rejects_wrong_images() {
     without.world.material_ids.pop();
     let mut shifted = image.pixels().to_vec();
     shifted.rotate_right(1);
-    let shifted = Image::new(640, 360, Shading::Normals, shifted);
+    let shifted = Image::new(640, 360, Shading::Normals, shifted).expect("an image");
     for wrong in [on_cpu(&without, Shading::Normals), shifted] {
         let compared = Comparison::of(&image, &wrong, Tolerance::default()).expect("same size");
         assert!(!compared.is_within(), "{compared:?}");

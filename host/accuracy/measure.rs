@@ -91,7 +91,11 @@ impl Escalation {
 impl fmt::Display for Escalation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let shares = |counts: [usize; 4]| {
-            let total = counts.iter().sum::<usize>().max(1) as f64;
+            let total = counts
+                .map(|count| count as f64)
+                .iter()
+                .sum::<f64>()
+                .max(1.0);
             counts.map(|count| 100.0 * count as f64 / total)
         };
         let [filter, pairs, distilled_c, distilled] =
@@ -188,11 +192,11 @@ impl Measured {
     #[must_use]
     pub fn ulp_at(&self, share: f64) -> Option<u32> {
         let largest = self.max_ulp_anywhere?;
-        let total: usize = self.histogram.iter().sum();
-        let mut seen = 0;
+        let total: f64 = self.histogram.iter().map(|count| *count as f64).sum();
+        let mut seen = 0.0;
         for (bucket, count) in self.histogram.iter().enumerate() {
-            seen += count;
-            if seen as f64 >= share * total as f64 {
+            seen += *count as f64;
+            if seen >= share * total {
                 let end = (1_u64 << bucket) - 1;
                 return Some(u32::try_from(end).map_or(largest, |end| end.min(largest)));
             }

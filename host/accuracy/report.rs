@@ -145,7 +145,10 @@ fn scatter(rungs: &[Row<'_>]) -> String {
     let points: Vec<Point> = rungs
         .iter()
         .map(|row| {
-            let wrong = row.measured.false_hits + row.measured.false_misses;
+            let wrong = row
+                .measured
+                .false_hits
+                .saturating_add(row.measured.false_misses);
             Point {
                 label: if wrong > 0 {
                     format!("{} ({wrong})", row.rung)
@@ -434,7 +437,8 @@ fn histograms(rungs: &[Row<'_>]) -> String {
         HEIGHT - 8.0
     );
     for (index, row) in rungs.iter().enumerate() {
-        let total = row.measured.histogram.iter().sum::<usize>().max(1) as f64;
+        let counts = row.measured.histogram.iter().map(|count| *count as f64);
+        let total = counts.sum::<f64>().max(1.0);
         let mut path = String::new();
         for (bucket, count) in row.measured.histogram.iter().enumerate() {
             let share = *count as f64 / total;

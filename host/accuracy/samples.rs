@@ -42,7 +42,9 @@ pub struct Step {
 /// How many samples a pixel [`measure`] takes in all.
 #[must_use]
 pub fn in_all(rungs: usize, most: u32) -> u64 {
-    2 * rungs as u64 * u64::from(most) + u64::from(of_reference(most))
+    (rungs as u64)
+        .saturating_mul(2 * u64::from(most))
+        .saturating_add(u64::from(of_reference(most)))
 }
 
 /// How many samples a pixel the reference has.

@@ -227,7 +227,7 @@ fn on_cpu(
             let took: Duration;
             let index = kind as usize;
             if kind == Kind::Primary {
-                render::cpu::render_to(&mut pixels, &launch, &world, settings(plan), QUIET);
+                render::cpu::render_to(&mut pixels, &launch, &world, settings(plan), QUIET)?;
                 took = started.elapsed();
                 found[index] = pixels
                     .iter()

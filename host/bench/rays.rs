@@ -106,13 +106,14 @@ impl RaySets {
         let surfaces: Vec<Surface> = squares(size)
             .map(|index| (&primary[index], hits[index]))
             .filter(|(_, hit)| hit.is_some())
-            .map(|(ray, hit): (&Ray, Hit)| {
-                let sphere: Sphere = scene.world.spheres[hit.sphere as usize];
+            .filter_map(|(ray, hit): (&Ray, Hit)| {
+                // Of another world, if the tracer is.
+                let sphere: Sphere = *scene.world.spheres.get(hit.sphere as usize)?;
                 let mut surface = Surface::at(ray, hit.t, sphere);
                 if surface.normal.dot(ray.direction) > 0.0 {
                     surface.normal = -surface.normal;
                 }
-                surface
+                Some(surface)
             })
             .collect();
         // Above, to the left, and on the eye's side of what is seen.

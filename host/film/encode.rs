@@ -254,7 +254,9 @@ mod tests {
     use spherule_kernel::Hit;
 
     fn one_pixel(shading: Shading, color: Vec3, depth: f32) -> Vec<u8> {
-        Image::new(1, 1, shading, vec![Pixel::new(color, depth)]).to_rgb8()
+        Image::new(1, 1, shading, vec![Pixel::new(color, depth)])
+            .expect("an image")
+            .to_rgb8()
     }
 
     #[test]
@@ -294,7 +296,7 @@ mod tests {
         let pixels = [2.0, 3.0, 4.0]
             .map(|distance| Pixel::new(Vec3::splat(distance), distance))
             .to_vec();
-        let image = Image::new(3, 1, Shading::Depth, pixels);
+        let image = Image::new(3, 1, Shading::Depth, pixels).expect("an image");
         assert_eq!(image.depth_range(), Some((2.0, 4.0)));
         assert_eq!(image.to_rgb8(), [255, 255, 255, 128, 128, 128, 0, 0, 0]);
     }

@@ -282,7 +282,7 @@ mod tests {
                 Pixel::new(Vec3::from_array(color), 1.0)
             })
             .collect();
-        Image::new(width, height, Shading::Lit, pixels)
+        Image::new(width, height, Shading::Lit, pixels).expect("an image")
     }
 
     /// Within what 32-bit sums leave.
@@ -332,7 +332,7 @@ mod tests {
     #[test]
     fn other_sizes_do_not_compare() {
         let a = image(|_, _| Vec3::ZERO);
-        let b = Image::new(1, 1, Shading::Lit, vec![Pixel::default()]);
+        let b = Image::new(1, 1, Shading::Lit, vec![Pixel::default()]).expect("an image");
         assert_eq!(mean_flip(&a, &b), None);
     }
 }

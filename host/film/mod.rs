@@ -10,10 +10,12 @@ pub mod compare;
 pub mod encode;
 pub mod flip;
 
+use std::path::PathBuf;
+
 use bytemuck::Zeroable;
 use spherule_kernel::{Pixel, Shading};
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::memory;
 use crate::scene::Develop;
 
@@ -46,31 +48,43 @@ pub fn allocate<T: Zeroable>(width: u32, height: u32) -> Result<Vec<T>> {
 impl Image {
     /// An image of these pixels.
     ///
-    /// # Panics
+    /// # Errors
     ///
-    /// If there are not `width × height` pixels.
-    #[must_use]
-    pub fn new(width: u32, height: u32, shading: Shading, pixels: Vec<Pixel>) -> Self {
-        assert_eq!(pixels.len(), width as usize * height as usize);
-        Self {
+    /// [`Error::Image`] if there are not `width × height` pixels.
+    pub fn new(width: u32, height: u32, shading: Shading, pixels: Vec<Pixel>) -> Result<Self> {
+        if pixels.len() as u64 != u64::from(width) * u64::from(height) {
+            return Err(Error::Image {
+                path: PathBuf::new(),
+                reason: format!("{} pixels are no {width} × {height} image", pixels.len()),
+                help: "give width × height pixels, row by row".into(),
+            });
+        }
+        Ok(Self {
             width,
             height,
             shading,
             pixels,
             alpha: Vec::new(),
             develop: Develop::default(),
-        }
+        })
     }
 
     /// Makes pixels let through what is behind the image: `alpha` says how opaque each is, from 0
     /// to 1, and the colours are taken as premultiplied.
     ///
-    /// # Panics
+    /// # Errors
     ///
-    /// If there is not one for each pixel.
-    pub fn set_alpha(&mut self, alpha: Vec<f32>) {
-        assert_eq!(alpha.len(), self.pixels.len());
+    /// [`Error::Image`] if there is not one for each pixel.
+    pub fn set_alpha(&mut self, alpha: Vec<f32>) -> Result<()> {
+        if alpha.len() != self.pixels.len() {
+            return Err(Error::Image {
+                path: PathBuf::new(),
+                reason: format!("{} opacities for {} pixels", alpha.len(), self.pixels.len()),
+                help: "give one for each pixel, row by row".into(),
+            });
+        }
         self.alpha = alpha;
+        Ok(())
     }
 
     /// How opaque each pixel is; `None` if all are.

@@ -32,7 +32,7 @@ pub struct Cost {
 /// How many frames [`measure`] renders by so many pipelines.
 #[must_use]
 pub fn frames(pipelines: usize) -> usize {
-    pipelines * (1 + ROUNDS)
+    pipelines.saturating_mul(1 + ROUNDS)
 }
 
 /// The costs of `scene` on `device` by the pipelines of each of `choices`. Only the first is certain to be

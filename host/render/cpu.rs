@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use spherule_kernel::{Launch, Pixel, Rung, Shading};
 
 use super::packet::{self, Frusta, Packet, SIDE};
-use super::{Progress, Settings};
+use super::{Progress, Settings, check_launch, check_pixels};
 use crate::error::Result;
 use crate::film;
 use crate::scene::World;
@@ -52,7 +52,7 @@ impl<'a> Prepared<'a> {
 ///
 /// # Errors
 ///
-/// [`OutOfHostMemory`](crate::Error::OutOfHostMemory) if the host has no room for the image.
+/// [`OutOfHostMemory`](crate::Error::OutOfHostMemory) if the host has no room for the image, and as [`render_to`].
 pub fn render(
     launch: &Launch,
     world: &Prepared<'_>,
@@ -61,19 +61,25 @@ pub fn render(
 ) -> Result<Vec<Pixel>> {
     let size = launch.tile_size;
     let mut pixels = film::allocate(size.x, size.y)?;
-    render_to(&mut pixels, launch, world, settings, progress);
+    render_to(&mut pixels, launch, world, settings, progress)?;
     Ok(pixels)
 }
 
 /// [`render`] to where an image was before: `pixels`, row by row, of which there are as many as the launch has. Where
 /// `progress` breaks off, pixels that were not reached stay as they are.
+///
+/// # Errors
+///
+/// [`Error::Scene`](crate::Error::Scene) if the launch covers no part of an image, or has not as many pixels.
 pub fn render_to(
     pixels: &mut [Pixel],
     launch: &Launch,
     world: &Prepared<'_>,
     settings: Settings,
     progress: Progress<'_>,
-) {
+) -> Result<()> {
+    check_launch(launch)?;
+    check_pixels(launch, pixels.len())?;
     const TEXTBOOK: u32 = Rung::Textbook.to_u32();
     const ROBUST: u32 = Rung::Robust.to_u32();
     const COMPENSATED: u32 = Rung::Compensated.to_u32();
@@ -87,6 +93,7 @@ pub fn render_to(
         Rung::Certified => bands_on::<CERTIFIED>,
     };
     bands(launch, world, settings.shading, progress, pixels);
+    Ok(())
 }
 
 fn bands_on<const RUNG: u32>(

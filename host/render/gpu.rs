@@ -11,7 +11,7 @@ use spherule_kernel::{Launch, Material, Pixel, Shading, Sphere};
 
 use super::pace::Pace;
 use super::tiles::Tiles;
-use super::{Progress, QUIET, Settings, Timings};
+use super::{Progress, QUIET, Settings, Timings, check_whole};
 use crate::accuracy::canary::Canary;
 use crate::device::{Access, Buffer, Gpu, Kernel};
 use crate::error::{Error, Result};
@@ -202,6 +202,7 @@ pub fn render_paced(
     progress: Progress<'_>,
     pace: &mut Pace,
 ) -> Result<(Vec<Pixel>, Timings)> {
+    check_whole(launch)?;
     let size = launch.image_size;
     let mut image = film::allocate(size.x, size.y)?;
     let mut readback = Duration::ZERO;
@@ -235,6 +236,7 @@ pub fn render_paced(
 ///
 /// As [`render`].
 pub fn time(gpu: &Gpu, launch: &Launch, world: &Prepared) -> Result<Duration> {
+    check_whole(launch)?;
     let all = world.paced(|pace| each_tile(gpu, launch, world, pace, QUIET, |_, _, _| Ok(())))?;
     Ok(all.trace)
 }

@@ -3,7 +3,7 @@
 //! | module | holds |
 //! | --- | --- |
 //! | [`cpu`] | on every thread of this machine |
-//! | [`packet`] | camera rays on the CPU, a square of pixels at once |
+//! | `packet` | camera rays on the CPU, a square of pixels at once |
 //! | [`gpu`] | the kernel's entry point over tiles, within a device's limits |
 //! | [`paths`] | light paths, for scenes that call for effects |
 //! | [`estimate`] | whether a GPU is worth opening for an image |
@@ -18,7 +18,7 @@ pub mod estimate;
 pub mod fit;
 pub mod gpu;
 pub mod pace;
-pub mod packet;
+mod packet;
 pub mod paths;
 mod tiles;
 
@@ -196,10 +196,10 @@ pub fn render(
         traced = pixels.iter().filter(|pixel| pixel.is_written()).count() as u64;
         missing = blank_the_rest(&mut pixels);
     }
-    let mut image = Image::new(scene.width, scene.height, settings.shading, pixels);
+    let mut image = Image::new(scene.width, scene.height, settings.shading, pixels)?;
     image.develop = scene.develop;
     if !missing.is_empty() {
-        image.set_alpha(missing);
+        image.set_alpha(missing)?;
     }
     Ok(Rendered {
         image,
@@ -272,6 +272,50 @@ pub fn whole_image(scene: &Scene) -> Result<Launch> {
         first_sphere: 0,
         sphere_count: u32::MAX,
     })
+}
+
+/// Whether a launch covers a part of an image that can be.
+fn check_launch(launch: &Launch) -> Result<()> {
+    let Launch {
+        image_size: size,
+        tile_origin: origin,
+        tile_size: tile,
+        ..
+    } = *launch;
+    let is_image = size
+        .cmple(glam::UVec2::splat(crate::scene::limits::MAX_IMAGE_SIDE))
+        .all();
+    let is_inside = origin.cmple(size).all() && tile.cmple(size - origin.min(size)).all();
+    if is_image && is_inside && tile.min_element() > 0 {
+        return Ok(());
+    }
+    Err(Error::Scene(SceneError::without_place(
+        "",
+        format!("a launch of {tile} pixels from {origin} on is no part of an image of {size}"),
+        "make it by render::whole_image",
+    )))
+}
+
+/// Whether a launch covers an image that can be, all of it.
+fn check_whole(launch: &Launch) -> Result<()> {
+    check_launch(&Launch {
+        tile_origin: glam::UVec2::ZERO,
+        tile_size: launch.image_size,
+        ..*launch
+    })
+}
+
+/// Whether these are as many pixels as a launch has, which was checked.
+fn check_pixels(launch: &Launch, count: usize) -> Result<()> {
+    let tile = launch.tile_size;
+    if count as u64 == u64::from(tile.x) * u64::from(tile.y) {
+        return Ok(());
+    }
+    Err(Error::Scene(SceneError::without_place(
+        "",
+        format!("a launch of {tile} pixels has room for {count}"),
+        "give as many pixels as the launch has",
+    )))
 }
 
 fn camera(scene: &Scene) -> Result<Camera> {

@@ -57,7 +57,7 @@ impl Pace {
             .max(MIN_TILE_PIXELS)
             .min(max_pixels.max(1));
         let row_is_whole = left.x == width;
-        if row_is_whole && pixels >= u64::from(width) {
+        if row_is_whole && width > 0 && pixels >= u64::from(width) {
             let rows = (pixels / u64::from(width)).min(u64::from(left.y));
             UVec2::new(width, rows as u32)
         } else {

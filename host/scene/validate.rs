@@ -103,7 +103,7 @@ fn validate_sky(sky: &Surroundings) -> Result<()> {
     all("the sky's zenith", sky.zenith, limits::RADIANCE)?;
     if let Some(sun) = &sky.sun {
         let length = sun.direction.as_dvec3().length();
-        if !((length - 1.0).abs() < 1e-3) {
+        if !(0.999..1.001).contains(&length) {
             return Err(wrong(
                 format!(
                     "the direction towards the sun, {}, is no unit vector",

@@ -77,8 +77,12 @@ impl World {
         self.material_names
             .resize(self.materials.len(), String::new());
         self.spheres.extend_from_slice(&other.spheres);
-        self.material_ids
-            .extend(other.material_ids.iter().map(|id| id + offset));
+        self.material_ids.extend(
+            other
+                .material_ids
+                .iter()
+                .map(|id| id.saturating_add(offset)),
+        );
         if moves {
             self.velocities.resize(self.spheres.len(), Vec3::ZERO);
         }

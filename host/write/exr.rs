@@ -124,9 +124,10 @@ mod tests {
                 let mut color = || random.vec3(-1.0, 1e6);
                 let pixels: Vec<Pixel> = (0..count).map(|_| Pixel::new(color(), 1.0)).collect();
                 let alpha: Vec<f32> = (0..count).map(|_| color().x).collect();
-                let mut image = Image::new(width, height, Shading::Lit, pixels.clone());
+                let mut image =
+                    Image::new(width, height, Shading::Lit, pixels.clone()).expect("an image");
                 if has_alpha {
-                    image.set_alpha(alpha.clone());
+                    image.set_alpha(alpha.clone()).expect("one for each");
                 }
                 let mut file = tempfile::tempfile().expect("a file");
                 let trouble = OnceCell::new();

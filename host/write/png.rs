@@ -202,9 +202,11 @@ mod tests {
         };
         let count = (width * height) as usize;
         let pixels = (0..count).map(|_| Pixel::new(value(), 1.0)).collect();
-        let mut image = Image::new(width, height, Shading::Normals, pixels);
+        let mut image = Image::new(width, height, Shading::Normals, pixels).expect("an image");
         if has_alpha {
-            image.set_alpha((0..count).map(|_| value().x).collect());
+            image
+                .set_alpha((0..count).map(|_| value().x).collect())
+                .expect("one for each");
         }
         image
     }

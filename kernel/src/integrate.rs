@@ -141,7 +141,7 @@ pub fn trace_pixel<T: Traversal>(
     previous: Accumulator,
 ) -> Accumulator {
     let launch = scenery.launch;
-    let pixel = launch.tile_origin + pixel;
+    let pixel = launch.tile_origin.wrapping_add(pixel);
     let mut accumulator = previous;
     let mut sample = launch.first_sample;
     let end = sample.wrapping_add(launch.sample_count);

@@ -146,12 +146,16 @@ pub fn nearest_hit_in<S: Spheres + ?Sized>(
 #[inline]
 #[must_use]
 pub fn is_occluded<S: Spheres + ?Sized>(rung: u32, ray: &Ray, spheres: &S) -> bool {
+    let ray = &Ray {
+        t_max: ray.end(),
+        ..*ray
+    };
     let mut index = 0;
     let mut occluded = false;
     while (index < spheres.count()) & !occluded {
         // SAFETY: `index` is below the number of spheres.
         let sphere = unsafe { spheres.sphere(index) };
-        occluded = intersect(rung, sphere, ray) < ray.end();
+        occluded = intersect(rung, sphere, ray) < ray.t_max;
         index += 1;
     }
     occluded

@@ -80,7 +80,9 @@ pub fn render(prepared: &Prepared, settings: &Settings, progress: Progress<'_>) 
             preview = Some(coarse);
         }
     }
-    let deadline = settings.time_limit.map(|limit| started + limit);
+    let deadline = settings
+        .time_limit
+        .and_then(|limit| started.checked_add(limit));
     let mut budget = Budget::new(prepared.samples, deadline, settings.noise);
     let mut stopped_by = StoppedBy::Samples;
     while let Some((first, count)) = budget.next() {

@@ -205,9 +205,12 @@ pub fn render(
         let all = image.len();
         let pixels = &mut image[start..start + count];
         // What is left of the time is shared out evenly over what is left of the image.
-        let deadline = settings.time_limit.map(|limit| {
-            let left = limit.saturating_sub(tracing.elapsed());
-            Instant::now() + left.mul_f64(count as f64 / (all - start) as f64)
+        let deadline = settings.time_limit.and_then(|limit| {
+            let left = limit.saturating_sub(tracing.elapsed()).as_secs_f64();
+            let share = count as f64 / (all - start) as f64;
+            // One that is beyond what a clock counts is none.
+            let left = Duration::try_from_secs_f64(left * share).ok()?;
+            Instant::now().checked_add(left)
         });
         let mut budget = Budget::new(prepared.samples, deadline, settings.noise);
         let mut in_part = (0, 0);

@@ -132,9 +132,9 @@ pub fn render(
         scene.height,
         Shading::Lit,
         into_pixels(accumulators),
-    );
+    )?;
     if !alpha.is_empty() {
-        image.set_alpha(alpha);
+        image.set_alpha(alpha)?;
     }
     image.develop = scene.develop;
     Ok(Rendered {

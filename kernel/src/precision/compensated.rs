@@ -168,7 +168,7 @@ impl Quadratic {
     #[inline]
     fn unscale(&self, t: f32) -> f32 {
         let exponent = self.length_scale.to_bits() >> 23;
-        let inverse = f32::from_bits((254 - exponent).max(1) << 23);
+        let inverse = f32::from_bits(254_u32.wrapping_sub(exponent).max(1) << 23);
         mul(mul(t, self.direction_scale), inverse)
     }
 
@@ -241,6 +241,6 @@ fn inverse_power_of_two(value: f32) -> f32 {
     if (exponent == 0) | (exponent == 255) {
         1.0
     } else {
-        f32::from_bits((254 - exponent).max(1) << 23)
+        f32::from_bits(254_u32.wrapping_sub(exponent).max(1) << 23)
     }
 }

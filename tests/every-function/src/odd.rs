@@ -1034,7 +1034,9 @@ impl Odd for Image {
         ]);
         let mut image = Self::new(width, height, shading, pixels);
         if s.one_in(3) {
-            image.set_alpha((0..count).map(|_| Odd::odd(s)).collect());
+            image
+                .set_alpha((0..count).map(|_| Odd::odd(s)).collect())
+                .expect("one for each");
         }
         image.develop.exposure = Odd::odd(s);
         image.develop.tonemap = s.pick(&[Tonemap::Clamp, Tonemap::Reinhard, Tonemap::Aces]);
