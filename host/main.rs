@@ -1,12 +1,14 @@
 //! The command `spherule`.
 
-use spherule::cli::Allocator;
+use spherule::cli::{Allocator, spare_addresses};
 
 #[global_allocator]
 static ALLOCATOR: Allocator = Allocator;
 
 fn main() -> std::process::ExitCode {
     quiet_mesa();
+    // SAFETY: this is the start of the process, which has no other thread yet.
+    unsafe { spare_addresses() };
     spherule::cli::main()
 }
 

@@ -47,17 +47,25 @@ unsafe impl GlobalAlloc for Allocator {
     }
 }
 
-/// Catches SIGABRT from now on, and is sparing with memory that is limited.
+/// Has the system's allocator be sparing with addresses where they are limited (`ulimit -v`): glibc sets 64 MiB of them aside
+/// for each thread.
+///
+/// # Safety
+///
+/// The process has no other thread yet.
+pub unsafe fn spare_addresses() {
+    #[cfg(all(target_os = "linux", target_env = "gnu"))]
+    if crate::memory::limit().is_some() {
+        // SAFETY: the caller's.
+        unsafe { libc::mallopt(libc::M_ARENA_MAX, 1) };
+    }
+}
+
+/// Catches SIGABRT from now on.
 #[cfg(unix)]
 pub(super) fn install() {
     // Whether a limit is set does not change; a handler may not look.
     let is_limited = crate::memory::limit().is_some();
-    // glibc sets 64 MiB of addresses aside for each thread.
-    #[cfg(all(target_os = "linux", target_env = "gnu"))]
-    if is_limited {
-        // SAFETY: it is called before there is another thread.
-        unsafe { libc::mallopt(libc::M_ARENA_MAX, 1) };
-    }
     // SAFETY: the handler reads an atomic, writes to a file descriptor and ends the process; none of these allocates or locks.
     let _ = unsafe {
         signal_hook::low_level::register(signal_hook::consts::SIGABRT, move || {

@@ -35,7 +35,7 @@ use crate::scene::Scene;
 use crate::shown::shown_path;
 use crate::threads::{self, Fewer};
 use crate::write::Output;
-pub use last_resort::Allocator;
+pub use last_resort::{Allocator, spare_addresses};
 
 /// Runs the command line of this process; its exit code is for `main` to return.
 ///

@@ -124,28 +124,30 @@ fn rank(info: &wgpu::AdapterInfo) -> u32 {
     }
 }
 
-/// An instance with the graphics interfaces of this system.
+/// What loading drivers takes of a limited memory, in bytes: with less, lavapipe (Mesa 22.3) may read through pointers that it was not given.
+const FOR_DRIVERS: u64 = 480 << 20;
+
+/// An instance with the graphics interfaces of this system; with none where memory is limited (`ulimit -v`) to less than drivers take.
 #[must_use]
 pub fn instance() -> wgpu::Instance {
     // No VALIDATION_INDIRECT_CALL: spherule dispatches nothing indirectly, and the check would
     // cap buffers at 4 GiB. `with_env` lets WGPU_VALIDATION and WGPU_DEBUG turn checks on.
     let flags = wgpu::InstanceFlags::empty().with_env();
+    let has_room = memory::limit().is_none() || memory::check(FOR_DRIVERS, "drivers").is_ok();
     wgpu::Instance::new(wgpu::InstanceDescriptor {
-        backends: wgpu::Backends::VULKAN | wgpu::Backends::METAL | wgpu::Backends::DX12,
+        backends: if has_room {
+            wgpu::Backends::VULKAN | wgpu::Backends::METAL | wgpu::Backends::DX12
+        } else {
+            wgpu::Backends::empty()
+        },
         flags,
         ..wgpu::InstanceDescriptor::new_without_display_handle()
     })
 }
 
-/// What loading drivers takes of a limited memory, in bytes: with less, lavapipe (Mesa 22.3) may read through pointers that it was not given.
-const FOR_DRIVERS: u64 = 480 << 20;
-
-/// Every adapter of this system, the preferred ones first; none where memory is limited (`ulimit -v`) to less than drivers take.
+/// Every adapter of this system, the preferred ones first.
 #[must_use]
 pub fn adapters(instance: &wgpu::Instance) -> Vec<wgpu::Adapter> {
-    if memory::limit().is_some() && memory::check(FOR_DRIVERS, "loading drivers").is_err() {
-        return Vec::new();
-    }
     let mut adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::all()));
     adapters.sort_by_key(|adapter| rank(&adapter.get_info()));
     for adapter in &adapters {

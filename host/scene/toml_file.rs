@@ -595,7 +595,7 @@ impl Reader<'_> {
                         &Spanned::new(span, ()),
                         format!("a material of kind {kind_name} has no {name}"),
                         "not for this kind",
-                        "diffuse has color; metal has color and roughness; glass has index, absorption and thickness;                          emissive has color and strength",
+                        "diffuse has color; metal has color and roughness; glass has index, absorption and thickness; emissive has color and strength",
                     )
                     .into());
             }
