@@ -28,7 +28,7 @@ use super::walk::{self, Features};
 const LANES: usize = 4;
 
 /// What finds the hits of rays on one rung, in a tree or without one.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug)]
 pub struct Single<'a> {
     /// The rung.
     pub(super) rung: Rung,
@@ -220,7 +220,7 @@ impl Search {
 
     /// What was found; with `ANY` only whether anything was.
     #[inline(always)]
-    pub(super) fn finish<const ANY: bool>(mut self) -> Hit {
+    pub(super) fn finish<const ANY: bool>(&mut self) -> Hit {
         if !ANY {
             self.ask_at_last();
         }

@@ -98,15 +98,10 @@ pub(super) fn end_of(slabs: &Slabs, t: f32) -> f32 {
 /// which is below 2⁵⁵ i + 2⁴⁰. Numbers that are none are not plain.
 #[inline(always)]
 pub(super) fn is_plain(ray: &Ray, start: f32) -> bool {
-    let [x, y, z] = ray.origin.abs().to_array();
-    let [dx, dy, dz] = ray.direction.abs().to_array();
-    (x < Node::MAX_COORDINATE)
-        & (y < Node::MAX_COORDINATE)
-        & (z < Node::MAX_COORDINATE)
-        & (dx <= f32::MAX)
-        & (dy <= f32::MAX)
-        & (dz <= f32::MAX)
-        & (start.abs() < Node::MAX_COORDINATE)
+    // A sum of what is not negative is no number or infinite if any of it is.
+    let far = ray.origin.abs().element_sum() + start.abs();
+    let fast = ray.direction.abs().element_sum();
+    (far < Node::MAX_COORDINATE) & (fast <= f32::MAX)
 }
 
 impl Sixteen {

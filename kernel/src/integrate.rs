@@ -133,7 +133,7 @@ const PHASE: u32 = 2;
 
 /// Adds the launch's samples of one pixel to what it holds. `pixel` counts from the upper left of
 /// the tile.
-#[inline]
+#[inline(always)]
 #[must_use]
 pub fn trace_pixel<T: Traversal>(
     scenery: &Scenery<'_, T>,

@@ -97,8 +97,8 @@ impl Material {
 #[must_use]
 pub fn material_of(sphere: usize, material_ids: &[u32], materials: &[Material]) -> Material {
     if sphere < material_ids.len() && !materials.is_empty() {
-        let last = materials.len() as u32 - 1;
-        read(materials, read(material_ids, sphere).min(last) as usize)
+        let id = read(material_ids, sphere) as usize;
+        read(materials, id.min(materials.len() - 1))
     } else {
         Material::diffuse(Vec3::ONE)
     }

@@ -168,9 +168,7 @@ fn trace<const EFFECTS: u32, const RUNG: u32>(
     let world = &prepared.world;
     let called = Effects::from_bits(launch.called_effects);
     let scenery = Scenery {
-        effects: Effects::from_bits(EFFECTS)
-            .within(Effects::BUILT)
-            .within(called),
+        effects: called,
         rung: RUNG,
         launch,
         traversal: Single::new(rung, prepared.nodes.tree(), levels),
@@ -192,15 +190,33 @@ fn trace<const EFFECTS: u32, const RUNG: u32>(
                     return;
                 }
                 before = accumulators.len();
-                for (index, accumulator) in accumulators.iter_mut().enumerate() {
-                    let index = run * RUN + index;
-                    let at = UVec2::new(
-                        (index % width) as u32,
-                        (band * BAND_ROWS + index / width) as u32,
-                    );
-                    *accumulator = trace_pixel(&scenery, at, *accumulator);
-                }
+                let first = width * BAND_ROWS * band + RUN * run;
+                trace_run::<EFFECTS, RUNG>(&scenery, width, first, accumulators);
             }
             goes_on(before);
         });
+}
+
+/// Traces some pixels, of an image so wide, from the one with index `first` on. A function of its own, because what is asked
+/// between runs takes registers.
+#[inline(never)]
+fn trace_run<const EFFECTS: u32, const RUNG: u32>(
+    scenery: &Scenery<'_, Single<'_>>,
+    width: usize,
+    first: usize,
+    accumulators: &mut [Accumulator],
+) {
+    // Said here again, where they are constants.
+    let scenery = Scenery {
+        effects: Effects::from_bits(EFFECTS)
+            .within(Effects::BUILT)
+            .within(scenery.effects),
+        rung: RUNG,
+        ..*scenery
+    };
+    for (index, accumulator) in accumulators.iter_mut().enumerate() {
+        let index = first + index;
+        let at = UVec2::new((index % width) as u32, (index / width) as u32);
+        *accumulator = trace_pixel(&scenery, at, *accumulator);
+    }
 }

@@ -94,8 +94,13 @@ impl<'a> Launcher<'a> {
             sums: gpu.zeroed("accumulators", pixels)?,
             work,
             fewest,
-            // What a sample takes by fog, glass or bounces is known only from the first of them.
-            pace: Pace::starting_at(work * fewest),
+            // What a sample takes by fog, glass or bounces is known only from the first of them. On a GPU few pixels take as
+            // long as many.
+            pace: if gpu.is_software() {
+                Pace::starting_at(work * fewest)
+            } else {
+                Pace::first_on(gpu)
+            },
         })
     }
 
