@@ -15,7 +15,7 @@
 //! | [`accuracy`] | how right the rungs of the ladder are, decided by an exact oracle |
 //! | [`mod@bench`] | how fast rays of every kind are |
 //! | [`film`] | images: encoding, comparison |
-//! | [`mod@write`] | outputs: checked before the work, written whole or not at all |
+//! | `write` | outputs: checked before the work, written whole or not at all |
 //! | [`error`] | [`Error`]: what can go wrong, and how to mend it |
 //! | [`threads`] | the pool of threads that work on the CPU is done by |
 //! | `memory` | memory of the host that may not be there |
@@ -40,7 +40,7 @@ pub mod scene;
 mod shown;
 pub mod threads;
 pub mod trace;
-pub mod write;
+pub(crate) mod write;
 
 pub use device::{Device, DeviceChoice, Gpu};
 pub use error::{Error, Result};

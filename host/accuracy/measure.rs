@@ -197,7 +197,9 @@ impl Measured {
         for (bucket, count) in self.histogram.iter().enumerate() {
             seen += *count as f64;
             if seen >= share * total {
-                let end = (1_u64 << bucket) - 1;
+                let end = 1_u64
+                    .checked_shl(bucket as u32)
+                    .map_or(u64::MAX, |end| end - 1);
                 return Some(u32::try_from(end).map_or(largest, |end| end.min(largest)));
             }
         }

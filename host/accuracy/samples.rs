@@ -112,7 +112,7 @@ pub fn measure(
         };
         let mut samples = 1;
         // By the reference, whose pipeline another rung's is like, and from then on by the step before.
-        let mut expected = compiling + took / reached;
+        let mut expected = compiling.saturating_add(took / reached);
         while samples <= most {
             let is_late = left().is_some_and(|left| left < expected);
             let is_near = reached < wanted && reached / samples < LEAST_REFERENCE;
@@ -127,7 +127,7 @@ pub fn measure(
                 progress((before + part * f64::from(samples)) / all)
             })?;
             let compile = rendered.timings.compile;
-            expected = 2 * started.elapsed().saturating_sub(compile);
+            expected = started.elapsed().saturating_sub(compile).saturating_mul(2);
             done += f64::from(samples);
             steps.push(Step {
                 rung: rung.name(),
@@ -137,7 +137,10 @@ pub fn measure(
                 estimate: rendered.reached.map_or(0.0, |reached| reached.noise),
                 flip: mean_flip(&reference, &rendered.image).unwrap_or(f64::NAN),
             });
-            samples *= 2;
+            let Some(next) = samples.checked_mul(2) else {
+                break;
+            };
+            samples = next;
         }
     }
     Ok(Measured {

@@ -47,12 +47,9 @@ impl<T: Pod> Buffer<T> {
 
     /// Some of its elements as a kernel's argument. The first must be as many bytes from the start as a multiple of the device's
     /// `min_storage_buffer_offset_alignment`.
-    ///
-    /// # Panics
-    ///
-    /// If the range is empty or leaves the buffer.
+    /// The range is not empty and does not leave the buffer.
     #[must_use]
-    pub fn binding_of(&self, range: Range<usize>) -> Binding<'_> {
+    pub(crate) fn binding_of(&self, range: Range<usize>) -> Binding<'_> {
         assert!(range.start < range.end && range.end <= self.len);
         let bytes = |count: usize| (count * size_of::<T>()) as u64;
         Binding {

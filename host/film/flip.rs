@@ -16,11 +16,12 @@ use super::encode::Encoder;
 pub const PIXELS_PER_DEGREE: f64 = 67.020_643_276_582_26;
 
 /// The mean ꟻLIP of two images as they would be shown on a screen: 0 where nobody sees a
-/// difference, 1 at most. `None` if they differ in size or in shading.
+/// difference, 1 at most. `None` if they differ in size or in shading, or have no pixels.
 #[must_use]
 pub fn mean_flip(reference: &Image, test: &Image) -> Option<f64> {
     if (reference.width, reference.height, reference.shading)
         != (test.width, test.height, test.shading)
+        || reference.pixels.is_empty()
     {
         return None;
     }

@@ -61,7 +61,9 @@ pub fn measure(
             let before = round * choices.len() + index;
             let expected = if round == 0 { longest } else { last[index] };
             let started = Instant::now();
-            if before > 0 && until.is_some_and(|until| started + expected > until) {
+            if before > 0
+                && until.is_some_and(|until| until.saturating_duration_since(started) < expected)
+            {
                 break 'rounds;
             }
             let settings = Settings {

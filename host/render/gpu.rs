@@ -119,7 +119,8 @@ impl Prepared {
         let trees: Option<Vec<Tree>> = runs.iter().map(grow).collect();
         let parts = runs.iter().enumerate().map(|(index, run)| {
             let spheres = &world.spheres[run.clone()];
-            let ids = &world.material_ids[run.clone()];
+            // The kernel has a material for spheres that have none.
+            let ids = world.material_ids.get(run.clone()).unwrap_or_default();
             Ok(match &trees {
                 Some(trees) => Part {
                     spheres: gpu.upload("spheres", &trees[index].sort(spheres))?,

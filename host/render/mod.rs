@@ -221,7 +221,9 @@ fn memory_for(scene: &Scene, bytes_a_pixel: u64) -> Result<()> {
     let image = scene.sky.as_ref().and_then(|sky| sky.image.as_ref());
     let texels = image.map_or(0, |image| image.texels.len() as u64);
     memory::check(
-        bytes_a_pixel * pixels + tree::BYTES_A_SPHERE * spheres + BYTES_A_TEXEL * texels + MARGIN,
+        bytes_a_pixel
+            .saturating_mul(pixels)
+            .saturating_add(tree::BYTES_A_SPHERE * spheres + BYTES_A_TEXEL * texels + MARGIN),
         &format!(
             "an image of {} × {} pixels of {spheres} sphere{}",
             scene.width,

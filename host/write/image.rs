@@ -107,7 +107,7 @@ impl Image {
     /// # Errors
     ///
     /// As [`Image::save`].
-    pub fn save_to(&self, output: &Output, room: Room) -> Result<()> {
+    pub(crate) fn save_to(&self, output: &Output, room: Room) -> Result<()> {
         let format = Format::of(output.path())?;
         // From here on it is for the encoder.
         drop(room);

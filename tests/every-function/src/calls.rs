@@ -109,6 +109,9 @@ pub const CALLS: &[Call] = &[
     Call::new("spherule::accuracy::cases::catalogue", |_| {
         seen(spherule::accuracy::cases::catalogue())
     }),
+    Call::new("spherule::accuracy::choose::bound", |s| {
+        seen(spherule::accuracy::choose::bound(&s.draw(), s.draw()))
+    }),
     Call::new("spherule::accuracy::choose::choose", |s| {
         seen(spherule::accuracy::choose::choose(
             &s.draw(),
@@ -131,6 +134,7 @@ pub const CALLS: &[Call] = &[
             &spherule::Device::Cpu,
             &s.many()[..],
             &s.draw(),
+            spherule::render::QUIET,
         ))
     }),
     Call::new("spherule::accuracy::measure::Escalation as Display", |s| {
@@ -278,6 +282,9 @@ pub const CALLS: &[Call] = &[
             &s.many()[..],
             &s.draw(),
             s.few(),
+            s.draw(),
+            s.draw(),
+            spherule::render::QUIET,
         ))
     }),
     Call::new("spherule::accuracy::scene_cases::SceneCase::judge", |s| {
@@ -303,6 +310,9 @@ pub const CALLS: &[Call] = &[
     Call::new("spherule::accuracy::ulp::distance", |s| {
         seen(spherule::accuracy::ulp::distance(s.draw(), s.draw()))
     }),
+    Call::new("spherule::accuracy::ulp::shown", |s| {
+        seen(spherule::accuracy::ulp::shown(s.draw()))
+    }),
     Call::new("spherule::bench::export::export", |s| {
         seen(spherule::bench::export::export(
             &s.folder(),
@@ -312,6 +322,9 @@ pub const CALLS: &[Call] = &[
             &s.draw(),
             s.draw(),
         ))
+    }),
+    Call::new("spherule::bench::export::prepare", |s| {
+        seen(spherule::bench::export::prepare(&s.path()))
     }),
     Call::new("spherule::bench::limit::Limit::of", |_| {
         seen(spherule::bench::limit::Limit::of(&spherule::Device::Cpu))
@@ -341,6 +354,9 @@ pub const CALLS: &[Call] = &[
     Call::new("spherule::bench::rays::Kind::name", |s| {
         seen(spherule::bench::rays::Kind::name(s.draw()))
     }),
+    Call::new("spherule::bench::rays::RaySets::check_room", |s| {
+        seen(spherule::bench::rays::RaySets::check_room(s.few(), s.few()))
+    }),
     Call::new("spherule::bench::rays::RaySets::kind", |s| {
         seen(spherule::bench::rays::RaySets::kind(&s.draw(), s.draw()))
     }),
@@ -350,6 +366,9 @@ pub const CALLS: &[Call] = &[
             &s.draw(),
             s.draw(),
         ))
+    }),
+    Call::new("spherule::bench::scenes::BenchScene::check_room", |s| {
+        seen(spherule::bench::scenes::BenchScene::check_room(s.draw()))
     }),
     Call::new("spherule::bench::scenes::BenchScene::make", |s| {
         seen(spherule::bench::scenes::BenchScene::make(
@@ -366,6 +385,16 @@ pub const CALLS: &[Call] = &[
     }),
     Call::new("spherule::bench::scenes::BenchScene::reach", |s| {
         seen(spherule::bench::scenes::BenchScene::reach(s.draw()))
+    }),
+    Call::new("spherule::bench::scenes::Source::load", |s| {
+        seen(spherule::bench::scenes::Source::load(
+            &s.draw(),
+            s.few(),
+            s.few(),
+        ))
+    }),
+    Call::new("spherule::bench::scenes::Source::named", |s| {
+        seen(spherule::bench::scenes::Source::named(&s.text()))
     }),
     Call::new("spherule::bench::scenes::load", |s| {
         seen(spherule::bench::scenes::load(&s.text(), s.few(), s.few()))
@@ -468,6 +497,14 @@ pub const CALLS: &[Call] = &[
         ))
     })
     .on_gpu(),
+    Call::new("spherule::device::gpu::Gpu::read_into", |s| {
+        seen(spherule::device::gpu::Gpu::read_into::<u32>(
+            s.gpu(),
+            &s.draw(),
+            &mut s.many()[..],
+        ))
+    })
+    .on_gpu(),
     Call::new("spherule::device::gpu::Gpu::rows_of", |s| {
         seen(spherule::device::gpu::Gpu::rows_of(s.gpu(), s.draw()))
     })
@@ -567,9 +604,6 @@ pub const CALLS: &[Call] = &[
     Call::new("spherule::film::Image::alpha", |s| {
         seen(spherule::film::Image::alpha(&s.draw()))
     }),
-    Call::new("spherule::film::Image::check_destination", |s| {
-        seen(spherule::film::Image::check_destination(&s.path()))
-    }),
     Call::new("spherule::film::Image::depth_range", |s| {
         seen(spherule::film::Image::depth_range(&s.draw()))
     }),
@@ -627,9 +661,6 @@ pub const CALLS: &[Call] = &[
     Call::new("spherule::film::encode::srgb", |s| {
         seen(spherule::film::encode::srgb(s.draw()))
     }),
-    Call::new("spherule::film::file::Format::of", |s| {
-        seen(spherule::film::file::Format::of(&s.path()))
-    }),
     Call::new("spherule::film::flip::mean_flip", |s| {
         seen(spherule::film::flip::mean_flip(&s.draw(), &s.draw()))
     }),
@@ -641,6 +672,9 @@ pub const CALLS: &[Call] = &[
     }),
     Call::new("spherule::kernel_module::for_rung", |s| {
         seen(spherule::kernel_module::for_rung(s.draw()))
+    }),
+    Call::new("spherule::render::Rendered::is_complete", |s| {
+        seen(spherule::render::Rendered::is_complete(&s.draw()))
     }),
     Call::new("spherule::render::Settings as From#0", |s| {
         seen(<spherule::render::Settings as From<
@@ -662,6 +696,9 @@ pub const CALLS: &[Call] = &[
             s.draw(),
             &spherule::Device::Cpu,
             &s.many()[..],
+            s.draw(),
+            s.draw(),
+            spherule::render::QUIET,
         ))
     }),
     Call::new("spherule::render::cpu::Prepared::new", |s| {
@@ -747,6 +784,9 @@ pub const CALLS: &[Call] = &[
             s.draw(),
         ))
     }),
+    Call::new("spherule::render::pace::Pace::pixels", |s| {
+        seen(spherule::render::pace::Pace::pixels(&s.draw(), s.draw()))
+    }),
     Call::new("spherule::render::pace::Pace::spheres", |s| {
         seen(spherule::render::pace::Pace::spheres(&s.draw(), s.draw()))
     }),
@@ -760,48 +800,6 @@ pub const CALLS: &[Call] = &[
             s.draw(),
             s.draw(),
             s.draw(),
-        ))
-    }),
-    Call::new("spherule::render::packet::Frusta::of", |s| {
-        seen(spherule::render::packet::Frusta::of(&s.launch()))
-    }),
-    Call::new("spherule::render::packet::Packet as Default", |_| {
-        seen(<spherule::render::packet::Packet as Default>::default())
-    }),
-    Call::new("spherule::render::packet::Packet::hit", |s| {
-        seen(spherule::render::packet::Packet::hit(&s.draw(), s.draw()))
-    }),
-    Call::new("spherule::render::packet::Packet::new", |_| {
-        seen(spherule::render::packet::Packet::new())
-    }),
-    Call::new("spherule::render::packet::trace#0", |s| {
-        seen(spherule::render::packet::trace::<0>(
-            &mut s.draw(),
-            &s.launch(),
-            &s.draw(),
-            s.draw(),
-            s.draw::<odd::OddTree>().get(),
-            &s.many()[..],
-        ))
-    }),
-    Call::new("spherule::render::packet::trace#1", |s| {
-        seen(spherule::render::packet::trace::<1>(
-            &mut s.draw(),
-            &s.launch(),
-            &s.draw(),
-            s.draw(),
-            s.draw::<odd::OddTree>().get(),
-            &s.many()[..],
-        ))
-    }),
-    Call::new("spherule::render::packet::trace#2", |s| {
-        seen(spherule::render::packet::trace::<4>(
-            &mut s.draw(),
-            &s.launch(),
-            &s.draw(),
-            s.draw(),
-            s.draw::<odd::OddTree>().get(),
-            &s.many()[..],
         ))
     }),
     Call::new("spherule::render::paths::EffectChoice::compiled", |s| {
@@ -891,6 +889,9 @@ pub const CALLS: &[Call] = &[
     }),
     Call::new("spherule::scene::Scene::view_or_framed", |s| {
         seen(spherule::scene::Scene::view_or_framed(&s.draw()))
+    }),
+    Call::new("spherule::scene::environment::is_decoding", |_| {
+        seen(spherule::scene::environment::is_decoding())
     }),
     Call::new("spherule::scene::environment::load", |s| {
         seen(spherule::scene::environment::load(&s.path(), s.draw()))
@@ -1032,6 +1033,9 @@ pub const CALLS: &[Call] = &[
             &mut s.draw(),
             &s.draw(),
         ))
+    }),
+    Call::new("spherule::threads::most", |_| {
+        seen(spherule::threads::most())
     }),
     Call::new("spherule::trace::cpu::CpuTracer::bytes", |s| {
         seen(spherule::trace::cpu::CpuTracer::bytes(&s.draw()))
@@ -2287,6 +2291,15 @@ impl Odd for spherule::bench::rays::RaySets {
     }
 }
 
+impl Odd for spherule::bench::scenes::Source {
+    fn odd(s: &mut Source) -> Self {
+        match s.below(2) {
+            0 => spherule::bench::scenes::Source::Made(Odd::odd(s)),
+            _ => spherule::bench::scenes::Source::File(Odd::odd(s)),
+        }
+    }
+}
+
 impl Odd for spherule::device::adapter::DeviceChoice {
     fn odd(s: &mut Source) -> Self {
         match s.below(4) {
@@ -2319,62 +2332,83 @@ impl Odd for spherule::device::gpu::LaunchTime {
 
 impl Odd for spherule::error::Error {
     fn odd(s: &mut Source) -> Self {
-        match s.below(13) {
+        match s.below(18) {
             0 => spherule::error::Error::NoAdapter {
                 wanted: Odd::odd(s),
                 found: Odd::odd(s),
             },
-            1 => spherule::error::Error::DeviceRefused {
+            1 => spherule::error::Error::NoSuchAdapter {
+                name: Odd::odd(s),
+                found: Odd::odd(s),
+            },
+            2 => spherule::error::Error::DeviceRefused {
                 adapter: Odd::odd(s),
                 reason: Odd::odd(s),
             },
-            2 => spherule::error::Error::KernelInvalid {
+            3 => spherule::error::Error::KernelInvalid {
                 kernel: Odd::odd(s),
                 reason: Odd::odd(s),
             },
-            3 => spherule::error::Error::BufferTooLarge {
+            4 => spherule::error::Error::BufferTooLarge {
                 label: Odd::odd(s),
                 needed: Odd::odd(s),
                 limit: Odd::odd(s),
                 device: Odd::odd(s),
             },
-            4 => spherule::error::Error::OutOfMemory {
+            5 => spherule::error::Error::OutOfMemory {
                 device: Odd::odd(s),
                 during: Odd::odd(s),
             },
-            5 => spherule::error::Error::LaunchLimits {
+            6 => spherule::error::Error::OutOfHostMemory {
+                needed: Odd::odd(s),
+                purpose: Odd::odd(s),
+            },
+            7 => spherule::error::Error::Threads {
+                reason: Odd::odd(s),
+            },
+            8 => spherule::error::Error::LaunchLimits {
                 kernel: Odd::odd(s),
                 device: Odd::odd(s),
                 what: Odd::odd(s),
                 asked: Odd::odd(s),
                 limit: Odd::odd(s),
             },
-            6 => spherule::error::Error::Validation {
+            9 => spherule::error::Error::Validation {
                 during: Odd::odd(s),
                 reason: Odd::odd(s),
             },
-            7 => spherule::error::Error::DeviceLost {
+            10 => spherule::error::Error::DeviceLost {
                 device: Odd::odd(s),
                 during: Odd::odd(s),
                 reason: Odd::odd(s),
             },
-            8 => spherule::error::Error::Timeout {
+            11 => spherule::error::Error::Timeout {
                 device: Odd::odd(s),
                 during: Odd::odd(s),
                 limit: Odd::odd(s),
             },
-            9 => spherule::error::Error::RungRefused {
+            12 => spherule::error::Error::RungRefused {
                 rung: Odd::odd(s),
                 device: Odd::odd(s),
                 reason: Odd::odd(s),
             },
-            10 => spherule::error::Error::Readback {
+            13 => spherule::error::Error::Readback {
                 what: Odd::odd(s),
                 device: Odd::odd(s),
                 reason: Odd::odd(s),
             },
-            11 => spherule::error::Error::Scene(Odd::odd(s)),
-            _ => spherule::error::Error::Image {
+            14 => spherule::error::Error::Scene(Odd::odd(s)),
+            15 => spherule::error::Error::Image {
+                path: Odd::odd(s),
+                reason: Odd::odd(s),
+                help: Odd::odd(s),
+            },
+            16 => spherule::error::Error::Output {
+                path: Odd::odd(s),
+                reason: Odd::odd(s),
+                help: Odd::odd(s),
+            },
+            _ => spherule::error::Error::OutputRefused {
                 path: Odd::odd(s),
                 reason: Odd::odd(s),
                 help: Odd::odd(s),
@@ -2425,6 +2459,17 @@ impl Odd for spherule::film::compare::Tolerance {
     }
 }
 
+impl Odd for spherule::render::Rendered {
+    fn odd(s: &mut Source) -> Self {
+        spherule::render::Rendered {
+            image: Odd::odd(s),
+            traced: Odd::odd(s),
+            timings: Odd::odd(s),
+            reached: Odd::odd(s),
+        }
+    }
+}
+
 impl Odd for spherule::render::Settings {
     fn odd(s: &mut Source) -> Self {
         spherule::render::Settings {
@@ -2438,12 +2483,45 @@ impl Odd for spherule::render::Settings {
     }
 }
 
+impl Odd for spherule::render::Timings {
+    fn odd(s: &mut Source) -> Self {
+        spherule::render::Timings {
+            setup: Odd::odd(s),
+            compile: Odd::odd(s),
+            trace: Odd::odd(s),
+            readback: Odd::odd(s),
+        }
+    }
+}
+
 impl Odd for spherule::render::paths::EffectChoice {
     fn odd(s: &mut Source) -> Self {
         match s.below(3) {
             0 => spherule::render::paths::EffectChoice::Auto,
             1 => spherule::render::paths::EffectChoice::All,
             _ => spherule::render::paths::EffectChoice::Only(Odd::odd(s)),
+        }
+    }
+}
+
+impl Odd for spherule::render::paths::budget::Reached {
+    fn odd(s: &mut Source) -> Self {
+        spherule::render::paths::budget::Reached {
+            samples: Odd::odd(s),
+            asked: Odd::odd(s),
+            noise: Odd::odd(s),
+            stopped_by: Odd::odd(s),
+        }
+    }
+}
+
+impl Odd for spherule::render::paths::budget::StoppedBy {
+    fn odd(s: &mut Source) -> Self {
+        match s.below(4) {
+            0 => spherule::render::paths::budget::StoppedBy::Samples,
+            1 => spherule::render::paths::budget::StoppedBy::TimeLimit,
+            2 => spherule::render::paths::budget::StoppedBy::Noise,
+            _ => spherule::render::paths::budget::StoppedBy::Interrupted,
         }
     }
 }

@@ -30,7 +30,6 @@ use spherule::kernel::{
     Accumulator, Camera, Effects, Launch, Light, Material, PathLaunch, Pixel, Rung, Shading, Sphere,
 };
 use spherule::render::pace::Pace;
-use spherule::render::packet::{Frusta, Packet};
 use spherule::render::paths::EffectChoice;
 use spherule::render::{cpu, gpu, paths};
 use spherule::scene::molecule::elements::{Element, UNKNOWN, by_number};
@@ -374,6 +373,13 @@ impl Odd for Duration {
             1 => Self::new(s.bits(), s.below(1_000_000_000) as u32),
             _ => Self::from_nanos(s.bits() % 1_000_000),
         }
+    }
+}
+
+impl Odd for std::time::Instant {
+    /// Now, or soon.
+    fn odd(s: &mut Source) -> Self {
+        Self::now() + Duration::from_nanos(s.bits() % 1_000_000)
     }
 }
 
@@ -1032,7 +1038,7 @@ impl Odd for Image {
             Shading::Depth,
             Shading::Flat,
         ]);
-        let mut image = Self::new(width, height, shading, pixels);
+        let mut image = Self::new(width, height, shading, pixels).expect("as many pixels");
         if s.one_in(3) {
             image
                 .set_alpha((0..count).map(|_| Odd::odd(s)).collect())
@@ -1061,22 +1067,6 @@ impl Odd for CpuTracer {
 impl Odd for Pace {
     fn odd(s: &mut Source) -> Self {
         Self::starting_at(Odd::odd(s))
-    }
-}
-
-impl Odd for Packet {
-    fn odd(_: &mut Source) -> Self {
-        Self::new()
-    }
-}
-
-impl Odd for Frusta {
-    fn odd(s: &mut Source) -> Self {
-        let mut launch = s.launch();
-        // Launches that it does not take are for its own call.
-        launch.tile_origin = UVec2::ZERO;
-        launch.tile_size = launch.tile_size.max(UVec2::ONE);
-        Self::of(&launch)
     }
 }
 

@@ -18,6 +18,14 @@ use rustdoc_types::{
 /// Functions that are not called, and why.
 const LEFT_OUT: &[(&str, &str)] = &[
     (
+        "spherule::cli::run",
+        "is a whole command: tests/command_line_as_a_function.rs",
+    ),
+    (
+        "spherule::threads::start",
+        "starts the threads of the process, once: tests/memory.rs",
+    ),
+    (
         "spherule::cli::main",
         "takes the process' command line: tests/command_line.rs",
     ),
@@ -100,20 +108,16 @@ const WRITTEN: &[(&str, &[&str])] = &[
         &["read_first::<u32>(s.gpu(), &s.draw(), s.draw())"],
     ),
     (
+        "spherule::device::gpu::Gpu::read_into",
+        &["read_into::<u32>(s.gpu(), &s.draw(), &mut s.many()[..])"],
+    ),
+    (
         "spherule::film::allocate",
         &["allocate::<f32>(s.side(), s.side())"],
     ),
     (
         "spherule::render::fit::fit",
         &["fit(&mut s.draw(), s.draw(), |_| Ok(s.draw()))"],
-    ),
-    (
-        "spherule::render::packet::trace",
-        &[
-            "trace::<0>(&mut s.draw(), &s.launch(), &s.draw(), s.draw(), s.draw::<odd::OddTree>().get(), &s.many()[..])",
-            "trace::<1>(&mut s.draw(), &s.launch(), &s.draw(), s.draw(), s.draw::<odd::OddTree>().get(), &s.many()[..])",
-            "trace::<4>(&mut s.draw(), &s.launch(), &s.draw(), s.draw(), s.draw::<odd::OddTree>().get(), &s.many()[..])",
-        ],
     ),
     (
         "spherule::scene::tree::Tree::sort",
@@ -133,11 +137,6 @@ const ARGUMENTS: &[(&str, &str, &str)] = &[
         "&s.launch()",
     ),
     ("spherule::render::gpu::time", "launch", "&s.launch()"),
-    (
-        "spherule::render::packet::Frusta::of",
-        "launch",
-        "&s.launch()",
-    ),
     (
         "spherule::scene::molecule::pdb::parse",
         "text",
@@ -185,7 +184,6 @@ const BY_HAND: &[&str] = &[
     "spherule::film::Image",
     "spherule::render::gpu::Prepared",
     "spherule::render::pace::Pace",
-    "spherule::render::packet::Packet",
     "spherule::render::paths::prepare::Prepared",
     "spherule::scene::Scene",
     "spherule::scene::tree::Nodes",
@@ -240,8 +238,8 @@ const GIVEN: &[(&str, &str)] = &[
 
 /// Types of others that `src/odd.rs` makes.
 const FOREIGN: &[&str] = &[
-    "Box", "Duration", "Element", "Option", "PathBuf", "Range", "String", "UVec2", "UVec3",
-    "UVec4", "Vec", "Vec2", "Vec3", "Vec4",
+    "Box", "Duration", "Element", "Instant", "Option", "PathBuf", "Range", "String", "UVec2",
+    "UVec3", "UVec4", "Vec", "Vec2", "Vec3", "Vec4",
 ];
 
 type Result<T> = std::result::Result<T, Box<dyn Error>>;
@@ -620,6 +618,8 @@ impl<'a> Generator<'a> {
             "Deref" => format!("std::ops::Deref::deref(&{value})"),
             "Error" => format!("std::error::Error::source(&{value})"),
             "Drop" => format!("drop({value})"),
+            // Its functions are unsafe.
+            "GlobalAlloc" => return Ok(()),
             "Default" => format!("<{path} as Default>::default()"),
             "FromStr" => format!("s.text().parse::<{path}>()"),
             "From" => {
