@@ -37,7 +37,7 @@ pub struct Image {
 ///
 /// # Errors
 ///
-/// [`Error::OutOfHostMemory`](crate::Error::OutOfHostMemory) if the host has not that much.
+/// [`Error::OutOfHostMemory`] if the host has not that much.
 pub fn allocate<T: Zeroable>(width: u32, height: u32) -> Result<Vec<T>> {
     memory::zeroed(
         u64::from(width) * u64::from(height),

@@ -18,7 +18,7 @@ fn tiles(width: u32, height: u32) -> u64 {
     u64::from(width).div_ceil(TILE) * u64::from(height).div_ceil(TILE)
 }
 
-/// What [`write`] allocates, in bytes, or a little less.
+/// What [`write()`] allocates, in bytes, or a little less.
 pub(super) fn room(width: u32, height: u32, has_alpha: bool) -> u64 {
     let tile = TILE * TILE * if has_alpha { 16 } else { 12 };
     let threads = rayon::current_num_threads() as u64;

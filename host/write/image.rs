@@ -88,7 +88,7 @@ pub(super) fn out_of_memory(needed: u64) -> Error {
 }
 
 impl Image {
-    /// Writes the image to `path`, as its extension says, by way of [`Output`]: the file appears whole or not at all.
+    /// Writes the image to `path`, as its extension says: the file appears whole or not at all.
     ///
     /// # Errors
     ///

@@ -22,7 +22,7 @@ fn row(width: u32, has_alpha: bool) -> usize {
     width as usize * if has_alpha { 4 } else { 3 }
 }
 
-/// What [`write`] allocates, in bytes, or a little less.
+/// What [`write()`] allocates, in bytes, or a little less.
 pub(super) fn room(width: u32, has_alpha: bool) -> u64 {
     const COMPRESSOR: u64 = 1 << 20;
     let row = row(width, has_alpha);
