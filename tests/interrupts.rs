@@ -183,7 +183,8 @@ fn light_paths_are_broken_off_in_the_first_sample_and_later() {
         let alpha = part.image.alpha().expect("an alpha channel");
         for (index, alpha) in alpha.iter().enumerate() {
             let pixel = part.image.pixels()[index];
-            assert_eq!(pixel.color().max_element() > 0.0, *alpha == 1.0);
+            // One sample in a shadow is as dark as none.
+            assert!(*alpha == 1.0 || pixel.color() == glam::Vec3::ZERO);
         }
 
         // 16 pixels a call, more samples than one.
