@@ -33,6 +33,7 @@ use crate::device::Device;
 use crate::error::{Error, Result, SceneError};
 use crate::film::Image;
 use crate::memory;
+use crate::plural::count_of;
 use crate::scene::Scene;
 use crate::scene::tree::{self, Acceleration};
 use paths::{EffectChoice, Reached, StoppedBy};
@@ -225,10 +226,10 @@ fn memory_for(scene: &Scene, bytes_a_pixel: u64) -> Result<()> {
             .saturating_mul(pixels)
             .saturating_add(tree::BYTES_A_SPHERE * spheres + BYTES_A_TEXEL * texels + MARGIN),
         &format!(
-            "an image of {} × {} pixels of {spheres} sphere{}",
+            "an image of {} × {} pixels of {}",
             scene.width,
             scene.height,
-            if spheres == 1 { "" } else { "s" },
+            count_of(scene.world.spheres.len(), "sphere"),
         ),
     )
 }
