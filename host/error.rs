@@ -78,10 +78,12 @@ pub enum Error {
     },
 
     /// The host has no memory left, or may not use more.
-    #[error("out of memory: {purpose} takes {}, more than this process gets", bytes(*needed))]
+    #[error("out of memory: {purpose} takes {}, {}", bytes(*needed), more_than(*available))]
     OutOfHostMemory {
         /// All that was asked for, in bytes.
         needed: u64,
+        /// The bytes that there are, where that was looked up rather than found out by asking for them.
+        available: Option<u64>,
         /// What it is for.
         purpose: String,
     },
@@ -220,8 +222,11 @@ impl Error {
             Self::KernelInvalid { .. } => {
                 "update the graphics driver; if you changed the kernel, check it with spirv-val".into()
             }
-            Self::OutOfMemory { device, .. } if device == "the host" => HOST_MEMORY_HELP.into(),
-            Self::OutOfHostMemory { .. } => HOST_MEMORY_HELP.into(),
+            // Another device takes as much of the host's memory.
+            Self::OutOfHostMemory { .. } => {
+                "render a smaller image or fewer spheres, or give the process more memory (`ulimit -v` shows its limit)"
+                    .into()
+            }
             Self::BufferTooLarge { .. } | Self::OutOfMemory { .. } => {
                 "render fewer spheres or a smaller image, or use `--device cpu`, which uses the host's memory".into()
             }
@@ -277,8 +282,13 @@ pub(crate) fn nearest<'a>(text: &str, names: impl IntoIterator<Item = &'a str>) 
         .map(|(_, name)| name)
 }
 
-/// What to do where the host's memory is not enough: another device takes as much of it.
-const HOST_MEMORY_HELP: &str = "render a smaller image or fewer spheres, or give the process more memory (`ulimit -v` shows its limit)";
+/// How the memory that there is compares with what is needed.
+fn more_than(available: Option<u64>) -> String {
+    match available {
+        Some(available) => format!("and there are {}", bytes(available)),
+        None => "more than this process gets".into(),
+    }
+}
 
 /// So many bytes, for a person and exactly.
 fn bytes(count: u64) -> String {

@@ -8,9 +8,10 @@ use bytemuck::Zeroable;
 use crate::error::{Error, Result};
 
 /// The error that says so.
-fn failed(needed: u64, purpose: &str) -> Error {
+pub(crate) fn failed(needed: u64, purpose: &str) -> Error {
     Error::OutOfHostMemory {
         needed,
+        available: None,
         purpose: purpose.into(),
     }
 }
@@ -54,23 +55,16 @@ pub(crate) fn check(bytes: u64, purpose: &str) -> Result<()> {
 ///
 /// # Errors
 ///
-/// [`Error::OutOfMemory`], with both numbers.
-pub fn require(bytes: u64, during: &str) -> Result<()> {
+/// [`Error::OutOfHostMemory`], with both numbers.
+pub fn require(needed: u64, purpose: &str) -> Result<()> {
     match available() {
-        Some(available) if bytes > available => Err(Error::OutOfMemory {
-            device: "the host".into(),
-            during: format!(
-                "{during}: it takes about {:.1} GiB, and there are {:.1}",
-                gib(bytes),
-                gib(available)
-            ),
+        Some(available) if needed > available => Err(Error::OutOfHostMemory {
+            needed,
+            available: Some(available),
+            purpose: purpose.into(),
         }),
         _ => Ok(()),
     }
-}
-
-fn gib(bytes: u64) -> f64 {
-    bytes as f64 / f64::from(1 << 30)
 }
 
 /// The bytes that Linux says a new program may take without swapping.
@@ -109,7 +103,12 @@ mod tests {
         assert!(require(1 << 20, "making room").is_ok());
         if available().is_some() {
             let error = require(1 << 60, "making room").expect_err("an exbibyte");
-            assert!(error.to_string().contains("1073741824.0 GiB"), "{error}");
+            assert!(
+                error
+                    .to_string()
+                    .contains("1.0 EiB (1152921504606846976 bytes)"),
+                "{error}"
+            );
         }
     }
 }

@@ -99,6 +99,26 @@ fn seen() -> impl Strategy<Value = (Camera, Vec2, Sphere, f32)> {
         )
 }
 
+/// A ray and a sphere in other units of length, and the direction of another length.
+fn scaled(ray: &Ray, sphere: Sphere, length: i32, direction: i32) -> (Ray, Sphere) {
+    let (length, direction) = (2.0_f32.powi(length), 2.0_f32.powi(direction));
+    let of_t = |t: f32| {
+        if t == Hit::NONE_T {
+            t
+        } else {
+            (f64::from(t) * f64::from(length) / f64::from(direction)) as f32
+        }
+    };
+    let ray = Ray::within(
+        ray.origin * length,
+        ray.direction * direction,
+        of_t(ray.t_min),
+        of_t(ray.t_max),
+    );
+    let sphere = Sphere::new(sphere.center() * length, sphere.radius() * length);
+    (ray, sphere)
+}
+
 fn answer(rung: Rung, ray: &Ray, sphere: Sphere) -> Option<f32> {
     let t = intersect(rung.to_u32(), sphere, ray);
     assert!(!t.is_nan());
@@ -116,6 +136,43 @@ proptest! {
         if let (Some(found), Some(truth)) = (found, truth) {
             prop_assert!(ulp::distance(found, truth) <= 1, "{found:e} {truth:e}");
         }
+    }
+
+    /// Where squares of lengths and directions are no floats, too.
+    #[test]
+    fn certified_is_the_truth_in_all_units((ray, sphere) in aimed(), length in -70_i32..90, apart in -50_i32..50) {
+        let (ray, sphere) = scaled(&ray, sphere, length, (length + apart).clamp(-90, 100));
+        let truth = Intersection::of(&ray, &sphere).and_then(|exact| exact.nearest(&ray));
+        let found = answer(Rung::Certified, &ray, sphere);
+        prop_assert_eq!(found.is_some(), truth.is_some(), "{:?} {:?}", found, truth);
+        if let (Some(found), Some(truth)) = (found, truth) {
+            prop_assert!(ulp::distance(found, truth) <= 1, "{found:e} {truth:e}");
+        }
+    }
+
+    /// Where the parameter itself is a normal float, and what it is made of on the way would not be.
+    #[test]
+    fn parameters_keep_their_digits_whatever_the_units(height in 0.1_f32..0.5, from in 0.9_f32..1.0, length in 80_i32..100) {
+        let unit = 2.0_f32.powi(length);
+        let ray = Ray::new(Vec3::new(from * unit, height * unit, 0.0), Vec3::new(-1.5 * 2.0_f32.powi(126), 0.0, 0.0));
+        let sphere = Sphere::new(Vec3::ZERO, unit);
+        let truth = Intersection::of(&ray, &sphere).and_then(|exact| exact.nearest(&ray));
+        let truth = truth.expect("the ray starts inside");
+        for rung in [Rung::Compensated, Rung::Certified] {
+            let found = answer(rung, &ray, sphere).unwrap_or(f32::NAN);
+            prop_assert!(ulp::distance(found, truth) <= 1, "{} {found:e} {truth:e}", rung.name());
+        }
+    }
+
+    /// Units do not change a bit of what pairs of floats say.
+    #[test]
+    fn compensated_is_the_same_in_all_units((ray, sphere) in aimed(), length in -40_i32..90, apart in -50_i32..50) {
+        let found = answer(Rung::Compensated, &ray, sphere);
+        let direction = (length + apart).clamp(-90, 100);
+        let (ray, sphere) = scaled(&ray, sphere, length, direction);
+        let again = answer(Rung::Compensated, &ray, sphere);
+        let expected = found.map(|t| f64::from(t) * 2.0_f64.powi(length - direction));
+        prop_assert_eq!(again.map(f64::from), expected);
     }
 
     /// What the bounds say is certain is what every rung above the textbook's finds.

@@ -78,7 +78,7 @@ impl RaySets {
     ///
     /// # Errors
     ///
-    /// [`Error::OutOfMemory`](crate::Error::OutOfMemory).
+    /// [`Error::OutOfHostMemory`](crate::Error::OutOfHostMemory).
     pub fn check_room(width: u32, height: u32) -> Result<()> {
         let pixels = u64::from(width) * u64::from(height);
         memory::require(

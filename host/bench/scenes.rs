@@ -101,7 +101,7 @@ impl BenchScene {
     ///
     /// # Errors
     ///
-    /// [`Error::OutOfMemory`](crate::Error::OutOfMemory).
+    /// [`Error::OutOfHostMemory`](crate::Error::OutOfHostMemory).
     pub fn check_room(self) -> Result<()> {
         match self {
             Self::Uniform(count) => memory::require(

@@ -61,3 +61,16 @@ fn pixels(bound: f64) -> String {
         _ => digits,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bounds_have_two_digits_or_none() {
+        assert_eq!(pixels(0.123), "0.12");
+        assert_eq!(pixels(1.23e-9), "1.2e-9");
+        assert_eq!(pixels(f64::INFINITY), "any number");
+        assert_eq!(pixels(f64::NAN), "any number");
+    }
+}

@@ -78,8 +78,9 @@ impl Timer {
             })
         };
         self.readable.unmap();
-        ticks.filter(|ticks| *ticks > 0).map(|ticks| {
-            Duration::from_secs_f64(ticks as f64 * f64::from(self.nanoseconds_per_tick) * 1e-9)
-        })
+        // A driver may write nonsense, which is no time.
+        let seconds =
+            ticks.filter(|ticks| *ticks > 0)? as f64 * f64::from(self.nanoseconds_per_tick) * 1e-9;
+        Duration::try_from_secs_f64(seconds).ok()
     }
 }

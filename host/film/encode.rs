@@ -302,6 +302,19 @@ mod tests {
     }
 
     #[test]
+    fn opacities_are_rounded_and_colours_divided_by_them() {
+        let opacities = [0.25, 0.498, 1.0, 0.0, 2.0, -1.0];
+        let pixels = opacities.map(|alpha: f32| Pixel::new(Vec3::splat(alpha.max(0.0)), 1.0));
+        let mut image = Image::new(6, 1, Shading::Lit, pixels.to_vec()).expect("an image");
+        image.set_alpha(opacities.to_vec()).expect("opacities");
+        let bytes = image.to_rgba8();
+        let alphas: Vec<u8> = bytes.iter().skip(3).step_by(4).copied().collect();
+        assert_eq!(alphas, [64, 127, 255, 0, 255, 0]);
+        let reds: Vec<u8> = bytes.iter().step_by(4).copied().collect();
+        assert_eq!(reds, [255, 255, 255, 0, 255, 0]);
+    }
+
+    #[test]
     fn out_of_range_and_nan_are_clamped() {
         assert_eq!(
             one_pixel(Shading::Lit, Vec3::new(-1.0, 2.0, f32::NAN), 1.0),

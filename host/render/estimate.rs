@@ -21,7 +21,7 @@ const RAY_AMONG_MANY: f64 = 0.1e-9;
 const PATH: f64 = 1e-6;
 
 /// How long tracing takes on so many threads of a CPU, by the number of pixels, samples and spheres alone:
-/// right to a factor of three or so.
+/// right to a factor of three or so. [`Duration::MAX`] where that is too much for a duration.
 #[must_use]
 pub fn on_cpu(scene: &Scene, shading: Shading, effects: EffectChoice, threads: usize) -> Duration {
     let pixels = f64::from(scene.width) * f64::from(scene.height);
@@ -32,7 +32,7 @@ pub fn on_cpu(scene: &Scene, shading: Shading, effects: EffectChoice, threads: u
     } else {
         RAY + many
     };
-    Duration::from_secs_f64(pixels * pixel / threads.max(1) as f64)
+    Duration::try_from_secs_f64(pixels * pixel / threads.max(1) as f64).unwrap_or(Duration::MAX)
 }
 
 /// Whether the CPU is done before a GPU would be open.
@@ -44,6 +44,18 @@ pub fn is_brief(scene: &Scene, shading: Shading, effects: EffectChoice, threads:
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_largest_image_is_not_brief() {
+        let mut scene = Scene::load("scenes/soft-light.toml").expect("a scene");
+        (scene.width, scene.height) = (u32::MAX, u32::MAX);
+        scene.sampling.samples = Some(u32::MAX);
+        assert_eq!(
+            on_cpu(&scene, Shading::Lit, EffectChoice::Auto, 1),
+            Duration::MAX
+        );
+        assert!(!is_brief(&scene, Shading::Lit, EffectChoice::Auto, 0));
+    }
 
     #[test]
     fn small_images_are_brief_and_light_paths_are_not() {

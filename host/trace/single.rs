@@ -189,6 +189,8 @@ pub(super) struct Search {
     is_bounded: bool,
     /// Ends where a sphere could still be of interest.
     pub(super) ray: Ray,
+    /// Where the ray ends by itself.
+    end: f32,
     line: Line,
     /// What was found. While there is an `unasked` sphere, `t` is where it is hit at most.
     pub(super) hit: Hit,
@@ -211,6 +213,7 @@ impl Search {
                 t_max: ray.end(),
                 ..*ray
             },
+            end: ray.end(),
             line,
             hit: Hit::NONE,
             unasked: None,
@@ -224,19 +227,22 @@ impl Search {
         if !ANY {
             self.ask_at_last();
         }
-        // No hit after all only where numbers are beyond what bounds are made for.
-        if self.hit.t < Hit::NONE_T {
-            self.hit
-        } else {
-            Hit::NONE
-        }
+        self.hit
     }
 
     /// Asks about the sphere that was found without.
     #[inline(always)]
     fn ask_at_last(&mut self) {
         if let Some(sphere) = self.unasked.take() {
-            self.found_at((self.intersect)(sphere, &self.ray), self.hit.sphere);
+            self.ray.t_max = self.end;
+            let t = (self.intersect)(sphere, &self.ray);
+            if t < self.end {
+                self.found_at(t, self.hit.sphere);
+            } else {
+                // No hit after all only where numbers are beyond what bounds are made for.
+                self.hit = Hit::NONE;
+                self.low = self.end * self.line.unit;
+            }
         }
     }
 

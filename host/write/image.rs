@@ -7,6 +7,7 @@ use super::sink::Sink;
 use super::{exr, png};
 use crate::error::{Error, Result};
 use crate::film::Image;
+use crate::memory;
 
 /// A kind of image file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,6 +49,9 @@ impl Format {
     }
 }
 
+/// What memory is for here.
+pub(super) const PURPOSE: &str = "writing the image";
+
 /// Memory that is kept until an image is written, so that one which took long is not lost for want of it.
 #[derive(Debug)]
 pub struct Room {
@@ -60,30 +64,15 @@ impl Room {
     ///
     /// # Errors
     ///
-    /// [`Error::OutOfMemory`] if the host has not that much.
+    /// [`Error::OutOfHostMemory`] if the host has not that much.
     pub fn reserve(format: Format, width: u32, height: u32, has_alpha: bool) -> Result<Self> {
         let encoder = match format {
             Format::Png => png::room(width, has_alpha),
             Format::Exr => exr::room(width, height, has_alpha),
         };
         let needed = encoder + Sink::BUFFER as u64;
-        let mut bytes = Vec::new();
-        usize::try_from(needed)
-            .ok()
-            .and_then(|needed| bytes.try_reserve_exact(needed).ok())
-            .ok_or_else(|| out_of_memory(needed))?;
+        let bytes = memory::room(needed, PURPOSE)?;
         Ok(Self { _bytes: bytes })
-    }
-}
-
-/// The host has not as many bytes as writing an image takes.
-pub(super) fn out_of_memory(needed: u64) -> Error {
-    Error::OutOfMemory {
-        device: "the host".into(),
-        during: format!(
-            "making room to write the image, {:.1} MiB",
-            needed as f64 / f64::from(1 << 20)
-        ),
     }
 }
 
@@ -93,7 +82,7 @@ impl Image {
     /// # Errors
     ///
     /// [`Error::OutputRefused`] if the extension is unknown, [`Error::Output`] if the file cannot be written,
-    /// [`Error::OutOfMemory`] if there is no memory for its rows.
+    /// [`Error::OutOfHostMemory`] if there is no memory for its rows.
     pub fn save(&self, path: impl AsRef<Path>) -> Result<()> {
         let output = Output::image(path.as_ref())?;
         let has_alpha = self.alpha().is_some();

@@ -6,11 +6,12 @@ use std::io::{self, Seek, Write};
 use std::path::{Path, PathBuf};
 
 use super::directory_of;
-use super::image::{Format, out_of_memory};
+use super::image::{self, Format};
 use super::same::Identity;
 use super::sink::{Sink, Trouble};
 use super::temporary::{Temporary, remove_dead};
 use crate::error::{Error, Result};
+use crate::memory;
 use crate::shown::shown_path;
 
 /// Where one output goes. What can be known before the work is checked when it is made.
@@ -129,7 +130,7 @@ impl Output {
     /// The error for a failure to write `most` bytes or less.
     fn explained(&self, failure: Failure, most: u64) -> Error {
         match failure {
-            Failure::Memory(needed) => out_of_memory(needed),
+            Failure::Memory(needed) => memory::failed(needed, image::PURPOSE),
             Failure::Encoding(reason) => self.failed(
                 format!("cannot be encoded: {reason}"),
                 "try another size or format",

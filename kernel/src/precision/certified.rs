@@ -105,7 +105,10 @@ pub fn intersect_with_stage(sphere: Sphere, ray: &Ray) -> (f32, Stage) {
     }
 }
 
-/// Stage 1. False where it cannot tell, which includes every NaN.
+/// What is added to the filter's sum of squares, so that a square that is no normal float decides nothing.
+const SMALLEST: f32 = 1e-30;
+
+/// Stage 1. False where it cannot tell, which includes every NaN, and a direction whose square is no normal float.
 #[inline]
 fn misses_for_certain(sphere: Sphere, ray: &Ray) -> bool {
     let o = ray.origin - sphere.center();
@@ -117,13 +120,15 @@ fn misses_for_certain(sphere: Sphere, ray: &Ray) -> bool {
     let foot = o - d * (b * inverse);
     let (ff, oo) = (foot.dot(foot), o.dot(o));
     let rr = sphere.radius() * sphere.radius();
-    let passes_by = ff - rr > FILTER * (ff + oo + rr);
-    let is_outside = oo - rr > FILTER * (oo + rr);
-    if passes_by | (is_outside & (b > 0.0) & (ray.t_min >= 0.0)) {
+    let squares = oo + rr + SMALLEST;
+    let has_length = (SMALLEST..f32::MAX).contains(&a);
+    let passes_by = ff - rr > FILTER * (ff + squares);
+    let is_outside = has_length & (oo - rr > FILTER * squares);
+    if (has_length & passes_by) | (is_outside & (b > 0.0) & (ray.t_min >= 0.0)) {
         return true;
     }
     if is_outside {
-        let discriminant = (rr - ff).max(0.0) + FILTER * (ff + oo + rr);
+        let discriminant = (rr - ff).max(0.0) + FILTER * (ff + squares);
         let root = (a * discriminant).sqrt();
         let size = (a * oo).sqrt() + root;
         let nearest = (-b - root - FILTER * size) / a;

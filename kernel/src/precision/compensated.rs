@@ -164,12 +164,14 @@ impl Quadratic {
 
     /// From a parameter of the scaled quadratic to one along the ray, exactly: both scales are
     /// powers of two, and the reciprocal of one is made from its exponent, because a device's
-    /// quotients are not exact.
+    /// quotients are not exact. The larger comes first, lest digits be lost below the normal floats on the way.
     #[inline]
     fn unscale(&self, t: f32) -> f32 {
         let exponent = self.length_scale.to_bits() >> 23;
         let inverse = f32::from_bits(254_u32.wrapping_sub(exponent).max(1) << 23);
-        mul(mul(t, self.direction_scale), inverse)
+        let larger = self.direction_scale.max(inverse);
+        let smaller = self.direction_scale.min(inverse);
+        mul(mul(t, larger), smaller)
     }
 
     /// |o|²|d|², roughly.

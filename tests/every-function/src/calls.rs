@@ -2361,6 +2361,7 @@ impl Odd for spherule::error::Error {
             },
             6 => spherule::error::Error::OutOfHostMemory {
                 needed: Odd::odd(s),
+                available: Odd::odd(s),
                 purpose: Odd::odd(s),
             },
             7 => spherule::error::Error::Threads {
