@@ -224,7 +224,7 @@ impl Error {
             }
             // Another device takes as much of the host's memory.
             Self::OutOfHostMemory { .. } => {
-                "render a smaller image or fewer spheres, or give the process more memory (`ulimit -v` shows its limit)"
+                "render a smaller image or fewer spheres, or give the process more memory (`ulimit -v` and `ulimit -d` show its limits)"
                     .into()
             }
             Self::BufferTooLarge { .. } | Self::OutOfMemory { .. } => {

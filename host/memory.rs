@@ -77,22 +77,34 @@ fn available() -> Option<u64> {
     kibibytes.checked_mul(1024)
 }
 
-/// How many bytes of addresses this process may use (`ulimit -v`); `None` without a limit.
+/// How many bytes this process may use, of addresses (`ulimit -v`) or of memory for data (`ulimit -d`), whichever are fewer; `None`
+/// without a limit.
 pub(crate) fn limit() -> Option<u64> {
     #[cfg(unix)]
     {
+        let of_addresses = soft_limit!(libc::RLIMIT_AS);
+        let of_data = soft_limit!(libc::RLIMIT_DATA);
+        of_addresses.into_iter().chain(of_data).min()
+    }
+    #[cfg(not(unix))]
+    None
+}
+
+/// A soft limit of this process, by its number, whose type depends on the system; `None` without one.
+#[cfg(unix)]
+macro_rules! soft_limit {
+    ($resource:expr) => {{
         let mut limit = libc::rlimit {
             rlim_cur: libc::RLIM_INFINITY,
             rlim_max: libc::RLIM_INFINITY,
         };
         // SAFETY: it writes to the struct that it is given.
-        let asked = unsafe { libc::getrlimit(libc::RLIMIT_AS, &raw mut limit) };
-        if asked == 0 && limit.rlim_cur != libc::RLIM_INFINITY {
-            return Some(limit.rlim_cur);
-        }
-    }
-    None
+        let asked = unsafe { libc::getrlimit($resource, &raw mut limit) };
+        (asked == 0 && limit.rlim_cur != libc::RLIM_INFINITY).then_some(limit.rlim_cur)
+    }};
 }
+#[cfg(unix)]
+use soft_limit;
 
 #[cfg(test)]
 mod tests {

@@ -7,8 +7,10 @@ use std::time::Duration;
 
 use common::{all_adapters, gpus, noop_adapter, open, skips};
 use spherule::device::{Access, Device, DeviceChoice, Gpu, GpuOptions, Module};
-use spherule::kernel::{Hit, Ray, Shading, Sphere, spirv};
-use spherule::render::{QUIET, render};
+use spherule::kernel::{Hit, Ray, Rung, Shading, Sphere, spirv};
+use spherule::render::{QUIET, Settings, paths, render};
+use spherule::scene::tree::Acceleration;
+use spherule::trace::GpuTracer;
 use spherule::{Error, Scene, kernel_module, wgpu};
 
 fn noop() -> Gpu {
@@ -362,4 +364,304 @@ fn readback() {
         .expect_err("nothing was written");
     assert!(matches!(error, Error::Readback { .. }), "{error:?}");
     assert_says(&error, &["144 of 144 pixels"]);
+}
+
+/// What one device made another refuses, though wgpu numbers the buffers of two instances alike.
+#[test]
+fn devices_are_told_apart() {
+    if skips("devices_are_told_apart") {
+        return;
+    }
+    let open = || Gpu::open(&DeviceChoice::Gpu).expect("a device");
+    let (one, other) = (open(), open());
+    let of_one = one.upload("numbers of one", &[1_u32; 4]).expect("room");
+    let of_other = other.upload("numbers", &[2_u32; 4]).expect("room");
+    let uniform = one.upload_uniform("uniform of one", &1_u32).expect("room");
+    let module = kernel_module::f32().expect("the kernel");
+    let access = [Access::Read, Access::ReadWrite];
+    let kernel = one
+        .kernel(&module, "measure_copying", &access)
+        .expect("a kernel");
+    let again = other
+        .kernel(&module, "measure_copying", &access)
+        .expect("a kernel");
+    let bindings = [of_other.binding(), of_other.binding()];
+    for error in [
+        other.read(&of_one).expect_err("of another"),
+        other.clear(&of_one).expect_err("of another"),
+        other.update(&uniform, &3).expect_err("of another"),
+        other
+            .launch(&kernel, &bindings, [1, 1, 1])
+            .expect_err("of another"),
+        other
+            .launch(&again, &[of_one.binding(), of_other.binding()], [1, 1, 1])
+            .expect_err("of another"),
+    ] {
+        assert!(matches!(error, Error::Validation { .. }), "{error:?}");
+        assert_says(&error, &["another device"]);
+    }
+    assert_eq!(other.read(&of_other).expect("numbers"), [2; 4]);
+}
+
+/// What the driver takes unseen is held against what is said of its buffers.
+#[test]
+fn accesses_are_those_of_the_module() {
+    let module = kernel_module::f32().expect("the kernel");
+    let gpu = noop();
+    let (read, write) = (Access::Read, Access::ReadWrite);
+    for (entry, said) in [
+        ("trace_rays", &[][..]),
+        ("trace_rays", &[read, read]),
+        ("trace_rays", &[Access::Uniform; 3]),
+        ("trace_rays", &[read, read, read]),
+        ("trace_rays", &[read, write, write]),
+    ] {
+        let error = gpu.kernel(&module, entry, said).expect_err("not so");
+        assert!(matches!(error, Error::KernelInvalid { .. }), "{error:?}");
+        assert_says(&error, &[entry, "binding"]);
+    }
+    for gpu in gpus() {
+        let kernel = gpu
+            .kernel(&module, "measure_copying", &[read, write])
+            .expect("a kernel");
+        let both = gpu.upload("both", &[[1.0_f32; 4]; 64]).expect("room");
+        let error = gpu
+            .launch(&kernel, &[both.binding(), both.binding()], [1, 1, 1])
+            .expect_err("read and written at once");
+        assert!(matches!(error, Error::Validation { .. }), "{error:?}");
+    }
+}
+
+/// An instruction of SPIR-V.
+fn instruction(opcode: u32, operands: &[u32]) -> Vec<u32> {
+    let mut words = vec![(operands.len() as u32 + 1) << 16 | opcode];
+    words.extend(operands);
+    words
+}
+
+fn module_of(name: &str, words: &[u32]) -> Module {
+    let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
+    Module::from_bytes(name, &bytes).expect("a module by its structure")
+}
+
+/// Kernels of anybody do not see what others left in the memory of workgroups.
+#[test]
+fn workgroup_memory_begins_as_zeros() {
+    let [peek, fill] = [b"peek", b"fill"].map(|name| u32::from_le_bytes(*name));
+    let words = [
+        vec![0x0723_0203, 0x0001_0300, 0, 100, 0],
+        instruction(17, &[1]),
+        instruction(14, &[0, 1]),
+        instruction(15, &[5, 14, peek, 0]),
+        instruction(15, &[5, 15, fill, 0]),
+        instruction(16, &[14, 17, 1, 1, 1]),
+        instruction(16, &[15, 17, 1, 1, 1]),
+        // Of the buffer: the stride, a block, its offset, set and binding.
+        instruction(71, &[6, 6, 4]),
+        instruction(71, &[7, 2]),
+        instruction(72, &[7, 0, 35, 0]),
+        instruction(71, &[9, 34, 0]),
+        instruction(71, &[9, 33, 0]),
+        instruction(19, &[2]),
+        instruction(21, &[3, 32, 0]),
+        // The workgroup's word.
+        instruction(32, &[4, 4, 3]),
+        instruction(59, &[4, 5, 4]),
+        instruction(29, &[6, 3]),
+        instruction(30, &[7, 6]),
+        instruction(32, &[8, 12, 7]),
+        instruction(59, &[8, 9, 12]),
+        instruction(32, &[10, 12, 3]),
+        instruction(43, &[3, 11, 0]),
+        instruction(43, &[3, 12, 0xdead_beef]),
+        instruction(33, &[13, 2]),
+        // The word goes to the buffer.
+        instruction(54, &[2, 14, 0, 13]),
+        instruction(248, &[20]),
+        instruction(61, &[3, 21, 5]),
+        instruction(65, &[10, 22, 9, 11, 11]),
+        instruction(62, &[22, 21]),
+        instruction(253, &[]),
+        instruction(56, &[]),
+        // The constant goes to both.
+        instruction(54, &[2, 15, 0, 13]),
+        instruction(248, &[30]),
+        instruction(62, &[5, 12]),
+        instruction(65, &[10, 31, 9, 11, 11]),
+        instruction(62, &[31, 12]),
+        instruction(253, &[]),
+        instruction(56, &[]),
+    ]
+    .concat();
+    let module = module_of("memory", &words);
+    for gpu in gpus() {
+        let [peek, fill] = ["peek", "fill"].map(|entry| {
+            gpu.kernel(&module, entry, &[Access::ReadWrite])
+                .expect("a kernel")
+        });
+        let word = gpu.zeroed::<u32>("word", 1).expect("room");
+        for round in 0..8 {
+            gpu.launch(&fill, &[word.binding()], [64, 1, 1])
+                .expect("a launch");
+            assert_eq!(gpu.read(&word).expect("a word"), [0xdead_beef]);
+            gpu.launch(&peek, &[word.binding()], [64, 1, 1])
+                .expect("a launch");
+            assert_eq!(
+                gpu.read(&word).expect("a word"),
+                [0],
+                "{} {round}",
+                gpu.name()
+            );
+        }
+    }
+}
+
+/// naga panics on a switch over a boolean.
+#[test]
+fn a_module_that_naga_panics_on_is_invalid() {
+    let main = u32::from_le_bytes(*b"main");
+    let words = [
+        vec![0x0723_0203, 0x0001_0300, 0, 100, 0],
+        instruction(17, &[1]),
+        instruction(14, &[0, 1]),
+        instruction(15, &[5, 7, main, 0]),
+        instruction(16, &[7, 17, 1, 1, 1]),
+        instruction(19, &[2]),
+        instruction(20, &[4]),
+        instruction(33, &[3, 2]),
+        instruction(41, &[4, 5]),
+        instruction(54, &[2, 7, 0, 3]),
+        instruction(248, &[8]),
+        instruction(247, &[9, 0]),
+        instruction(251, &[5, 9]),
+        instruction(248, &[9]),
+        instruction(253, &[]),
+        instruction(56, &[]),
+    ]
+    .concat();
+    let module = module_of("switch", &words);
+    for gpu in gpus() {
+        let error = gpu.kernel(&module, "main", &[]).expect_err("naga panics");
+        assert!(matches!(error, Error::KernelInvalid { .. }), "{error:?}");
+        assert_says(&error, &["switch/main"]);
+        assert_eq!(
+            gpu.read(&gpu.upload("after", &[1_u32]).expect("room"))
+                .expect("it works"),
+            [1]
+        );
+    }
+}
+
+#[test]
+fn more_elements_than_can_be_counted_are_too_large() {
+    for len in [usize::MAX, usize::MAX / 4 + 1, 1 << 62] {
+        let error = noop().zeroed::<u32>("many", len).expect_err("too many");
+        assert!(matches!(error, Error::BufferTooLarge { .. }), "{error:?}");
+    }
+}
+
+/// A launch that does not end in time leaves the device as it was: the next one runs once it has ended.
+#[test]
+fn launches_go_on_after_a_timeout() {
+    if skips("launches_go_on_after_a_timeout") {
+        return;
+    }
+    let module = kernel_module::f32().expect("the kernel");
+    for adapter in all_adapters() {
+        let options = GpuOptions {
+            timeout: Duration::from_millis(20),
+            ..GpuOptions::default()
+        };
+        let gpu = open(adapter, options);
+        let access = [Access::Read, Access::Read, Access::ReadWrite];
+        let kernel = gpu
+            .kernel(&module, "trace_rays", &access)
+            .expect("a kernel");
+        let ray = Ray::new(glam::Vec3::ZERO, glam::Vec3::X);
+        let rays = gpu.upload("rays", &vec![ray; 1 << 16]).expect("rays");
+        let hits = gpu.zeroed::<Hit>("hits", 1 << 16).expect("hits");
+        let mut count = 1 << 10;
+        let is_late = (0..8).any(|_| {
+            let sphere = Sphere::new(glam::Vec3::X, 0.1);
+            let spheres = gpu
+                .upload("spheres", &vec![sphere; count])
+                .expect("spheres");
+            count *= 4;
+            let bindings = [rays.binding(), spheres.binding(), hits.binding()];
+            gpu.launch(&kernel, &bindings, [1 << 10, 1, 1]).is_err()
+        });
+        assert!(is_late, "{}", gpu.name());
+        let sphere = Sphere::new(glam::Vec3::X, 0.1);
+        let spheres = gpu.upload("spheres", &[sphere]).expect("spheres");
+        let bindings = [rays.binding(), spheres.binding(), hits.binding()];
+        let mut last = None;
+        for _ in 0..1000 {
+            match gpu.launch(&kernel, &bindings, [1, 1, 1]) {
+                Ok(_) => {
+                    last = None;
+                    break;
+                }
+                // Still busy.
+                Err(error @ Error::Timeout { .. }) => last = Some(error),
+                Err(error) => panic!("{error:?}"),
+            }
+        }
+        assert!(last.is_none(), "{last:?}");
+    }
+}
+
+/// A batch that another tracer traced names spheres that this one does not have: those are no hits.
+#[test]
+fn hits_of_another_tracers_batch_are_none() {
+    for gpu in gpus() {
+        let row = |count: u32| -> Vec<Sphere> {
+            (0..count)
+                .map(|x| Sphere::new(glam::Vec3::new(x as f32, 0.0, -5.0), 0.4))
+                .collect()
+        };
+        let tracer =
+            |count| GpuTracer::new(gpu, &row(count), Acceleration::Tree).expect("a tracer");
+        let (large, small) = (tracer(1000), tracer(20));
+        let ray = Ray::new(glam::Vec3::new(900.0, 0.0, 0.0), glam::Vec3::NEG_Z);
+        let batch = large.upload(&[ray]).expect("rays");
+        large.nearest(Rung::Robust, &batch).expect("hits");
+        assert_eq!(large.hits(&batch).expect("hits")[0].sphere, 900);
+        assert!(!small.hits(&batch).expect("hits")[0].is_some());
+    }
+}
+
+/// What a program changes of a launch of light paths is looked at before any is traced.
+#[test]
+fn light_paths_of_no_image_are_refused() {
+    let mut scene = Scene::load("scenes/soft-light.toml").expect("a scene");
+    (scene.width, scene.height) = (16, 9);
+    let effects = paths::EffectChoice::Auto;
+    let plain = paths::Prepared::new(&scene, effects, Acceleration::Auto).expect("a scene");
+    let settings = Settings {
+        time_limit: Some(Duration::from_secs(1)),
+        ..Settings::default()
+    };
+    let (size, none) = (plain.launch.image_size, glam::UVec2::ZERO);
+    for (image, tile, origin) in [
+        (size, none, none),
+        (size, glam::UVec2::new(0, 9), none),
+        (none, none, none),
+        (glam::UVec2::new(0, 9), glam::UVec2::new(0, 9), none),
+        (size, glam::UVec2::new(16, 4), none),
+        (size, size, glam::UVec2::new(0, 1)),
+        (glam::UVec2::MAX, glam::UVec2::MAX, none),
+    ] {
+        let mut prepared = plain.clone();
+        prepared.launch.image_size = image;
+        prepared.launch.tile_size = tile;
+        prepared.launch.tile_origin = origin;
+        let on_cpu = paths::cpu::render(&prepared, &settings, QUIET);
+        let on_gpus = gpus()
+            .iter()
+            .map(|gpu| paths::gpu::render(gpu, &prepared, &settings, QUIET));
+        for rendered in std::iter::once(on_cpu).chain(on_gpus) {
+            let error = rendered.err().expect("no image");
+            assert!(matches!(error, Error::Scene(_)), "{error:?}");
+        }
+    }
 }

@@ -118,6 +118,49 @@ fn many_threads_are_capped_and_few_will_do() {
     assert!(stderr.contains("CPU, 1 thread "), "{stderr}");
 }
 
+/// On a GPU in software, too, what brings the image back is there before the first ray: whatever the limit, no image is traced
+/// and then lost.
+#[test]
+fn what_is_traced_on_a_gpu_can_be_read_back() {
+    if common::skips("what_is_traced_on_a_gpu_can_be_read_back") {
+        return;
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    let scene = folder.path().join("light.toml");
+    let text = "[image]\nsamples = 1\n[sky]\nhorizon = [1, 1, 1]\n[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\n";
+    std::fs::write(&scene, text).expect("a file");
+    let arguments = format!(
+        "render {} --device gpu --size 1500x1500 -o {}",
+        scene.display(),
+        folder.path().join("out.exr").display()
+    );
+    let mut pictures = 0;
+    for mebibytes in (540..=780).step_by(20) {
+        let limit = format!("ulimit -v {}", mebibytes * 1000);
+        let (code, stderr) = spherule(&limit, &[], &arguments);
+        assert!(code == Some(0) || code == Some(1), "{limit}: {stderr}");
+        assert!(!stderr.contains("while reading"), "{limit}: {stderr}");
+        pictures += usize::from(code == Some(0));
+    }
+    assert!(pictures > 0);
+}
+
+/// Limits on data (`ulimit -d`) are as good as those on addresses: a driver is not started in what it would break in.
+#[test]
+fn a_limit_on_data_is_no_crash() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let arguments = two_spheres(&folder);
+    for device in ["cpu", "gpu"] {
+        for kibibytes in [60_000, 100_000, 141_000, 164_000, 180_000, 260_000] {
+            let limit = format!("ulimit -d {kibibytes}");
+            let arguments = arguments.replace("--device cpu", &format!("--device {device}"));
+            let (code, stderr) = spherule(&limit, &[], &arguments);
+            assert!(code == Some(0) || code == Some(1), "{limit}: {stderr}");
+            assert!(!stderr.contains("internal error"), "{limit}: {stderr}");
+        }
+    }
+}
+
 /// A few of its steps; `tests/memory_sweep` alone takes forty.
 #[test]
 fn a_sweep_of_limits_ends_in_pictures_or_sentences() {

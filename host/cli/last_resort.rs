@@ -47,7 +47,7 @@ unsafe impl GlobalAlloc for Allocator {
     }
 }
 
-/// Has the system's allocator be sparing with addresses where they are limited (`ulimit -v`): glibc sets 64 MiB of them aside
+/// Has the system's allocator be sparing with addresses where they are limited (`ulimit -v`, `ulimit -d`): glibc sets 64 MiB of them aside
 /// for each thread.
 ///
 /// # Safety
@@ -81,7 +81,7 @@ pub(super) fn install() {}
 fn on_abort(is_limited: bool) {
     const HELP: &[u8] =
         b"  help: render a smaller image or fewer spheres, or give the process more memory \
-        (`ulimit -v` shows its limit)\n";
+        (`ulimit -v` and `ulimit -d` show its limits)\n";
     let refused = REFUSED.load(Ordering::Relaxed);
     let write = |text: &[u8]| {
         // SAFETY: the pointer and the length are those of a slice.

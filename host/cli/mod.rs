@@ -122,8 +122,8 @@ fn start_threads() -> Result<()> {
             match fewer {
                 Fewer::Capped => "more would only take memory",
                 Fewer::Memory =>
-                    "more would take too much of the memory that this process may use (ulimit -v)",
-                Fewer::System => "the system starts no more (ulimit -u, ulimit -v)",
+                    "more would take too much of the memory that this process may use (ulimit -v, ulimit -d)",
+                Fewer::System => "the system starts no more (ulimit -u, ulimit -v, ulimit -d)",
             }
         ));
     }
@@ -223,7 +223,7 @@ fn log_filter(wish: &str, quiet: &Targets) -> Result<Targets, String> {
 /// instead.
 fn set_panic_hook() {
     std::panic::set_hook(Box::new(|panic| {
-        if !crate::device::is_waiting() && !crate::scene::environment::is_decoding() {
+        if !crate::device::is_catching() && !crate::scene::environment::is_decoding() {
             let _ = writeln!(
                 std::io::stderr(),
                 "spherule: internal error, please report it: {panic}"

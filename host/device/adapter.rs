@@ -127,7 +127,7 @@ fn rank(info: &wgpu::AdapterInfo) -> u32 {
 /// What loading drivers takes of a limited memory, in bytes: with less, lavapipe (Mesa 22.3) may read through pointers that it was not given.
 const FOR_DRIVERS: u64 = 480 << 20;
 
-/// An instance with the graphics interfaces of this system; with none where memory is limited (`ulimit -v`) to less than drivers take.
+/// An instance with the graphics interfaces of this system; with none where memory is limited (`ulimit -v`, `ulimit -d`) to less than drivers take.
 #[must_use]
 pub fn instance() -> wgpu::Instance {
     // No VALIDATION_INDIRECT_CALL: spherule dispatches nothing indirectly, and the check would
@@ -177,7 +177,7 @@ pub fn list_adapters() -> Vec<AdapterReport> {
 pub(super) fn memory_limit() -> String {
     memory::limit().map_or(String::new(), |bytes| {
         format!(
-            "; this process may use {} MiB of memory (ulimit -v), and a driver may need more",
+            "; this process may use {} MiB of memory (ulimit -v, ulimit -d), and a driver may need more",
             bytes >> 20
         )
     })

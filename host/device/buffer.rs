@@ -3,6 +3,7 @@
 use std::marker::PhantomData;
 use std::num::NonZero;
 use std::ops::Range;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use bytemuck::Pod;
 
@@ -11,15 +12,17 @@ use bytemuck::Pod;
 pub struct Buffer<T> {
     pub(super) raw: wgpu::Buffer,
     pub(super) label: String,
+    pub(super) owner: Owner,
     len: usize,
     of: PhantomData<T>,
 }
 
 impl<T: Pod> Buffer<T> {
-    pub(super) fn from_raw(raw: wgpu::Buffer, label: &str, len: usize) -> Self {
+    pub(super) fn from_raw(raw: wgpu::Buffer, label: &str, owner: Owner, len: usize) -> Self {
         Self {
             raw,
             label: label.into(),
+            owner,
             len,
             of: PhantomData,
         }
@@ -42,6 +45,8 @@ impl<T: Pod> Buffer<T> {
     pub fn binding(&self) -> Binding<'_> {
         Binding {
             resource: self.raw.as_entire_binding(),
+            label: &self.label,
+            owner: self.owner,
         }
     }
 
@@ -58,6 +63,8 @@ impl<T: Pod> Buffer<T> {
                 offset: bytes(range.start),
                 size: NonZero::new(bytes(range.len())),
             }),
+            label: &self.label,
+            owner: self.owner,
         }
     }
 }
@@ -66,4 +73,18 @@ impl<T: Pod> Buffer<T> {
 #[derive(Clone, Debug)]
 pub struct Binding<'a> {
     pub(super) resource: wgpu::BindingResource<'a>,
+    pub(super) label: &'a str,
+    pub(super) owner: Owner,
+}
+
+/// The device that something was made on. wgpu tells devices of one instance apart, and not those of several.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Owner(u64);
+
+impl Owner {
+    /// Of a new device.
+    pub(super) fn new() -> Self {
+        static NEXT: AtomicU64 = AtomicU64::new(0);
+        Self(NEXT.fetch_add(1, Ordering::Relaxed))
+    }
 }

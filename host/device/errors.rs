@@ -112,16 +112,14 @@ impl Watch {
         during: &str,
     ) -> Result<()> {
         self.still_there(during)?;
-        POLLING.set(true);
         // `poll` panics where the driver reports a lost device or no memory; wgpu holds none of
         // its locks at that point.
-        let polled = catch_unwind(AssertUnwindSafe(|| {
+        let polled = caught(|| {
             device.poll(wgpu::PollType::Wait {
                 submission_index: Some(submission),
                 timeout: Some(limit),
             })
-        }));
-        POLLING.set(false);
+        });
         match polled {
             Ok(Ok(_)) => self.still_there(during),
             Ok(Err(wgpu::PollError::Timeout)) => Err(Error::Timeout {
@@ -134,13 +132,8 @@ impl Watch {
                 self.still_there(during)?;
                 Err(self.lost(during, error.to_string()))
             }
-            Err(panic) => {
+            Err(reason) => {
                 self.still_there(during)?;
-                let reason = panic
-                    .downcast_ref::<String>()
-                    .cloned()
-                    .or_else(|| panic.downcast_ref::<&str>().map(|text| (*text).to_owned()))
-                    .unwrap_or_else(|| "the driver gave no reason".into());
                 Err(self.lost(during, reason))
             }
         }
@@ -148,14 +141,28 @@ impl Watch {
 }
 
 thread_local! {
-    static POLLING: Cell<bool> = const { Cell::new(false) };
+    static IS_CATCHING: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Whether this thread is inside a wait whose panic is caught and reported as an [`Error`]; a
+/// Whether this thread is inside a call whose panic is caught and reported as an [`Error`]; a
 /// panic hook can then keep quiet.
 #[must_use]
-pub fn is_waiting() -> bool {
-    POLLING.get()
+pub fn is_catching() -> bool {
+    IS_CATCHING.get()
+}
+
+/// Calls what panics on some of its input, and holds no lock where it does; or what the panic said.
+pub(super) fn caught<T>(call: impl FnOnce() -> T) -> Result<T, String> {
+    let before = IS_CATCHING.replace(true);
+    let done = catch_unwind(AssertUnwindSafe(call));
+    IS_CATCHING.set(before);
+    done.map_err(|panic| {
+        panic
+            .downcast_ref::<String>()
+            .cloned()
+            .or_else(|| panic.downcast_ref::<&str>().map(|text| (*text).to_owned()))
+            .unwrap_or_else(|| "no reason was given".into())
+    })
 }
 
 fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
@@ -163,7 +170,7 @@ fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
 }
 
 /// wgpu's multi-line errors, with their causes, on one line.
-pub(super) fn one_line(error: &dyn std::error::Error) -> String {
+pub(super) fn one_line(error: &impl ToString) -> String {
     error
         .to_string()
         .split_whitespace()

@@ -22,8 +22,8 @@ use std::time::{Duration, Instant};
 use bytemuck::Pod;
 
 use super::adapter::{self, DeviceChoice};
-use super::buffer::{Binding, Buffer};
-use super::errors::{Watch, one_line};
+use super::buffer::{Binding, Buffer, Owner};
+use super::errors::{Watch, caught, one_line};
 use super::spirv::Module;
 use super::timer::Timer;
 use crate::error::{Error, Result};
@@ -69,6 +69,7 @@ pub struct Kernel {
     pipeline: wgpu::ComputePipeline,
     layout: wgpu::BindGroupLayout,
     workgroup_size: [u32; 3],
+    owner: Owner,
 }
 
 impl Kernel {
@@ -119,6 +120,8 @@ pub struct Gpu {
     watch: Watch,
     /// What was compiled so far; drivers keep it on disk, for the next process.
     kernels: Mutex<HashMap<KernelKey, Kernel>>,
+    /// What is made here bears it.
+    owner: Owner,
 }
 
 /// What a compiled kernel depends on: a digest of the module's words, as they were specialised, whether
@@ -186,6 +189,7 @@ impl Gpu {
             timer,
             watch,
             kernels: Mutex::default(),
+            owner: Owner::new(),
         })
     }
 
@@ -286,14 +290,28 @@ impl Gpu {
             return Ok(kernel.clone());
         }
 
+        let module = &if module.is_trusted() {
+            let only = module.only(entry_point);
+            check_bindings(&only, bindings).map_err(invalid)?;
+            only
+        } else {
+            module.clone()
+        };
         let during = format!("compiling the kernel {entry_point}");
         let started = Instant::now();
+        // naga panics on some modules.
+        let of_module = |error| match error {
+            Error::Validation { reason, .. } => invalid(reason),
+            other => other,
+        };
+        let shader = self
+            .watch
+            .checked(&self.device, &during, || {
+                caught(|| self.shader_module(module))
+            })
+            .map_err(of_module)?
+            .map_err(|reason| invalid(one_line(&reason)))?;
         let made = self.watch.checked(&self.device, &during, || {
-            let shader = if module.is_trusted() {
-                self.shader_module(&module.only(entry_point))
-            } else {
-                self.shader_module(module)
-            };
             let layout = self.bind_group_layout(entry_point, bindings);
             let pipeline_layout =
                 self.device
@@ -311,16 +329,14 @@ impl Gpu {
                     entry_point: Some(entry_point),
                     compilation_options: wgpu::PipelineCompilationOptions {
                         constants: &[],
-                        zero_initialize_workgroup_memory: false,
+                        // What another kernel left there is not for everybody's.
+                        zero_initialize_workgroup_memory: !module.is_trusted(),
                     },
                     cache: None,
                 });
             (pipeline, layout)
         });
-        let (pipeline, layout) = made.map_err(|error| match error {
-            Error::Validation { reason, .. } => invalid(reason),
-            other => other,
-        })?;
+        let (pipeline, layout) = made.map_err(of_module)?;
         tracing::debug!(
             "compiled {entry_point} of {}, {} KiB of SPIR-V: {:.1?}",
             module.name(),
@@ -332,6 +348,7 @@ impl Gpu {
             pipeline,
             layout,
             workgroup_size: entry.workgroup_size,
+            owner: self.owner,
         };
         kernels().insert(key, kernel.clone());
         Ok(kernel)
@@ -423,6 +440,7 @@ impl Gpu {
     /// [`Error::Validation`], [`Error::DeviceLost`].
     pub fn update<T: Pod>(&self, buffer: &Buffer<T>, value: &T) -> Result<()> {
         let during = format!("updating {}", buffer.label);
+        self.check_owner(buffer.owner, &buffer.label, &during)?;
         self.watch.checked(&self.device, &during, || {
             self.queue
                 .write_buffer(&buffer.raw, 0, bytemuck::bytes_of(value));
@@ -441,7 +459,7 @@ impl Gpu {
         let raw = self.watch.checked(&self.device, &during, || {
             self.create_buffer(label, size, usage, false)
         })?;
-        Ok(Buffer::from_raw(raw, label, len))
+        Ok(Buffer::from_raw(raw, label, self.owner, len))
     }
 
     /// Makes every byte of `buffer` zero again.
@@ -451,6 +469,7 @@ impl Gpu {
     /// [`Error::DeviceLost`].
     pub fn clear<T: Pod>(&self, buffer: &Buffer<T>) -> Result<()> {
         let during = format!("clearing {}", buffer.label);
+        self.check_owner(buffer.owner, &buffer.label, &during)?;
         self.watch.checked(&self.device, &during, || {
             let mut encoder = self.encoder("clear");
             encoder.clear_buffer(&buffer.raw, 0, None);
@@ -485,7 +504,7 @@ impl Gpu {
             during,
             reason: one_line(&error),
         })?;
-        Ok(Buffer::from_raw(raw, label, data.len()))
+        Ok(Buffer::from_raw(raw, label, self.owner, data.len()))
     }
 
     fn create_buffer(
@@ -508,13 +527,15 @@ impl Gpu {
         let limits = self.device.limits();
         let needed = (size_of::<T>() as u64)
             .saturating_mul(len.max(1) as u64)
-            .next_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT);
+            .checked_next_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT)
+            .unwrap_or(u64::MAX);
         let binding = if usage.contains(wgpu::BufferUsages::UNIFORM) {
             limits.max_uniform_buffer_binding_size
         } else {
             limits.max_storage_buffer_binding_size
         };
-        let limit = limits.max_buffer_size.min(binding);
+        // What wgpu adds to a size must not leave 64 bits.
+        let limit = limits.max_buffer_size.min(binding).min(1 << 62);
         if needed > limit {
             return Err(Error::BufferTooLarge {
                 label: label.into(),
@@ -544,6 +565,10 @@ impl Gpu {
             return Err(self.over_limit(&kernel.name, "the number of workgroups", *asked, limit));
         }
         let during = format!("running the kernel {}", kernel.name);
+        self.check_owner(kernel.owner, &kernel.name, &during)?;
+        for binding in bindings {
+            self.check_owner(binding.owner, binding.label, &during)?;
+        }
         let timer = self
             .timer
             .as_ref()
@@ -570,19 +595,32 @@ impl Gpu {
         })?;
         // Only after a submission that was taken: a mapped buffer must not be written to.
         let mapped = timer.map(Timer::map);
-        self.watch
-            .wait(&self.device, submission, self.timeout, &during)?;
+        let waited = self
+            .watch
+            .wait(&self.device, submission, self.timeout, &during);
         let host = started.elapsed();
+        let device = match (timer, mapped) {
+            (Some(timer), Some(mapped)) => timer.elapsed(&mapped),
+            _ => None,
+        };
+        waited?;
         tracing::trace!(
             "ran {} in {workgroups:?} workgroups of {:?} threads: {host:.1?}",
             kernel.name,
             kernel.workgroup_size
         );
-        let device = match (timer, mapped) {
-            (Some(timer), Some(mapped)) => timer.elapsed(&mapped),
-            _ => None,
-        };
         Ok(LaunchTime { device, host })
+    }
+
+    /// Refuses what another device made.
+    fn check_owner(&self, owner: Owner, label: &str, during: &str) -> Result<()> {
+        if owner == self.owner {
+            return Ok(());
+        }
+        Err(Error::Validation {
+            during: during.into(),
+            reason: format!("{label} was made on another device than this {}", self.name),
+        })
     }
 
     fn bind_group(&self, kernel: &Kernel, bindings: &[Binding<'_>]) -> wgpu::BindGroup {
@@ -630,15 +668,57 @@ impl Gpu {
     /// As [`Gpu::read`].
     pub fn read_into<T: Pod>(&self, buffer: &Buffer<T>, elements: &mut [T]) -> Result<()> {
         let len = elements.len().min(buffer.len());
+        self.read_through(&self.staging(buffer, len)?, buffer, elements)
+    }
+
+    /// Memory to read so many elements of `buffer` through: asked for before the work, so that what took long is not
+    /// lost for want of it.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::OutOfMemory`], [`Error::DeviceLost`].
+    pub(crate) fn staging<T: Pod>(&self, buffer: &Buffer<T>, len: usize) -> Result<Staging> {
+        let bytes = (len.min(buffer.len()) * size_of::<T>()).min(READBACK_BYTES) as u64;
+        let during = format!("making room to read {} back", buffer.label);
+        let raw = self.watch.checked(&self.device, &during, || {
+            self.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("readback"),
+                size: bytes.next_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT),
+                usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+                mapped_at_creation: false,
+            })
+        })?;
+        Ok(Staging(raw))
+    }
+
+    /// [`Gpu::read_into`], through memory that is there already.
+    ///
+    /// # Errors
+    ///
+    /// As [`Gpu::read`].
+    pub(crate) fn read_through<T: Pod>(
+        &self,
+        staging: &Staging,
+        buffer: &Buffer<T>,
+        elements: &mut [T],
+    ) -> Result<()> {
+        let len = elements.len().min(buffer.len());
         let bytes = bytemuck::cast_slice_mut::<T, u8>(&mut elements[..len]);
-        for (piece, bytes) in bytes.chunks_mut(READBACK_BYTES).enumerate() {
-            self.read_bytes(buffer, (piece * READBACK_BYTES) as u64, bytes)?;
+        let piece = staging.0.size() as usize;
+        for (index, bytes) in bytes.chunks_mut(piece.max(1)).enumerate() {
+            self.read_bytes(&staging.0, buffer, (index * piece) as u64, bytes)?;
         }
         Ok(())
     }
 
-    /// Copies bytes of `buffer` from `offset` on.
-    fn read_bytes<T: Pod>(&self, buffer: &Buffer<T>, offset: u64, bytes: &mut [u8]) -> Result<()> {
+    /// Copies bytes of `buffer` from `offset` on through `staging`.
+    fn read_bytes<T: Pod>(
+        &self,
+        staging: &wgpu::Buffer,
+        buffer: &Buffer<T>,
+        offset: u64,
+        bytes: &mut [u8],
+    ) -> Result<()> {
         let failed = |reason: String| Error::Readback {
             what: buffer.label.clone(),
             device: self.name.clone(),
@@ -646,31 +726,32 @@ impl Gpu {
         };
         let padded = (bytes.len() as u64).next_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT);
         let during = format!("reading {} back", buffer.label);
-        let (submission, staging, mapped) = self.watch.checked(&self.device, &during, || {
-            let staging = self.device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some("readback"),
-                size: padded,
-                usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
-                mapped_at_creation: false,
-            });
+        self.check_owner(buffer.owner, &buffer.label, &during)?;
+        let (submission, mapped) = self.watch.checked(&self.device, &during, || {
             let mut encoder = self.encoder("readback");
-            encoder.copy_buffer_to_buffer(&buffer.raw, offset, &staging, 0, padded);
+            encoder.copy_buffer_to_buffer(&buffer.raw, offset, staging, 0, padded);
             let submission = self.queue.submit([encoder.finish()]);
-            let mapped = map(&staging);
-            (submission, staging, mapped)
+            (submission, map(staging))
         })?;
-        self.watch
-            .wait(&self.device, submission, self.timeout, &during)?;
-        match mapped.try_recv() {
-            Ok(Ok(())) => {}
-            Ok(Err(error)) => return Err(failed(error.to_string())),
-            Err(_) => return Err(failed("the mapping did not finish with the copy".into())),
-        }
-        let view = staging
-            .get_mapped_range(..)
-            .map_err(|error| failed(error.to_string()))?;
-        bytes.copy_from_slice(&view[..bytes.len()]);
-        Ok(())
+        let waited = self
+            .watch
+            .wait(&self.device, submission, self.timeout, &during);
+        let read = waited.and_then(|()| {
+            // Another thread's poll may be about to say so.
+            match mapped.recv_timeout(self.timeout.min(LATE)) {
+                Ok(Ok(())) => {}
+                Ok(Err(error)) => return Err(failed(error.to_string())),
+                Err(_) => return Err(failed("the mapping did not finish with the copy".into())),
+            }
+            let view = staging
+                .get_mapped_range(..)
+                .map_err(|error| failed(error.to_string()))?;
+            bytes.copy_from_slice(&view[..bytes.len()]);
+            Ok(())
+        });
+        // Also where the mapping did not come in time: the next copy writes to it.
+        staging.unmap();
+        read
     }
 
     fn encoder(&self, label: &str) -> wgpu::CommandEncoder {
@@ -721,6 +802,34 @@ impl Gpu {
         }
     }
 }
+
+/// Holds what is said of a trusted module's bindings against the module, which no one else does.
+fn check_bindings(module: &Module, said: &[Access]) -> Result<(), String> {
+    for (binding, access) in module.bindings() {
+        match said.get(binding as usize) {
+            Some(said) if *said == access => {}
+            Some(said) => {
+                return Err(format!(
+                    "its binding {binding} is {access:?}, and {said:?} was said"
+                ));
+            }
+            None => {
+                return Err(format!(
+                    "it has a binding {binding}, and {} were said",
+                    said.len()
+                ));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Memory of the host that a device's buffers are read through.
+#[derive(Debug)]
+pub(crate) struct Staging(wgpu::Buffer);
+
+/// How long a mapping may be late behind what it waits for.
+pub(super) const LATE: Duration = Duration::from_secs(5);
 
 /// Starts mapping a whole buffer for reading; the channel tells when it is mapped.
 pub(super) fn map(

@@ -23,7 +23,8 @@ use crate::error::Result;
 use crate::plural::count_of;
 pub use adapter::{AdapterReport, DeviceChoice, list_adapters};
 pub use buffer::{Binding, Buffer};
-pub use errors::is_waiting;
+pub use errors::is_catching;
+pub(crate) use gpu::Staging;
 pub use gpu::{Access, Gpu, GpuOptions, Kernel, LaunchTime};
 pub use spirv::Module;
 

@@ -7,6 +7,7 @@
 use std::collections::{HashMap, HashSet};
 use std::fmt;
 
+use super::gpu::Access;
 use crate::error::{Error, Result};
 
 const MAGIC: u32 = 0x0723_0203;
@@ -35,6 +36,10 @@ mod op {
     pub(super) const BRANCH: u32 = 249;
     pub(super) const UNREACHABLE: u32 = 255;
     pub(super) const DECORATION_SPEC_ID: u32 = 1;
+    pub(super) const DECORATION_NON_WRITABLE: u32 = 24;
+    pub(super) const DECORATION_BINDING: u32 = 33;
+    pub(super) const CLASS_UNIFORM: u32 = 2;
+    pub(super) const CLASS_STORAGE_BUFFER: u32 = 12;
     pub(super) const MODE_LOCAL_SIZE: u32 = 17;
     pub(super) const MODEL_GL_COMPUTE: u32 = 5;
     pub(super) const CAPABILITY_FLOAT64: u32 = 10;
@@ -166,10 +171,9 @@ impl Module {
     ///
     /// # Safety
     ///
-    /// The words must be valid SPIR-V for Vulkan: a driver may do anything with others. What
-    /// rust-gpu emits is, unless somebody changed it. The kernel must also use its buffers as the
-    /// `Access` list given to [`Gpu::kernel`](super::Gpu::kernel) says, because nothing checks
-    /// that on this path.
+    /// The words must be valid SPIR-V for Vulkan, as rust-gpu emits it: a driver may do anything with others. Buffers that
+    /// a kernel only reads must be decorated as `NonWritable`, as rust-gpu does: what
+    /// [`Gpu::kernel`](super::Gpu::kernel) is told of them is held against that.
     #[must_use]
     pub unsafe fn trusted(mut self) -> Self {
         self.is_trusted = true;
@@ -236,6 +240,36 @@ impl Module {
         })?;
         self.words[position] = value;
         Ok(self)
+    }
+
+    /// What each binding of the module's buffers does, as its variables are decorated, in no order.
+    pub(super) fn bindings(&self) -> Vec<(u32, Access)> {
+        let mut binding_of = HashMap::new();
+        let mut are_read = HashSet::new();
+        let mut found = Vec::new();
+        for (_, opcode, operands) in Instructions::of(&self.words).flatten() {
+            match (opcode, operands) {
+                (op::DECORATE, [variable, op::DECORATION_BINDING, binding]) => {
+                    binding_of.insert(*variable, *binding);
+                }
+                (op::DECORATE, [variable, op::DECORATION_NON_WRITABLE]) => {
+                    are_read.insert(*variable);
+                }
+                // Decorations stand before variables.
+                (op::VARIABLE, [_, variable, class, ..]) => {
+                    let access = match *class {
+                        op::CLASS_UNIFORM => Access::Uniform,
+                        op::CLASS_STORAGE_BUFFER if are_read.contains(variable) => Access::Read,
+                        op::CLASS_STORAGE_BUFFER => Access::ReadWrite,
+                        _ => continue,
+                    };
+                    let binding = binding_of.get(variable).copied();
+                    found.extend(binding.map(|binding| (binding, access)));
+                }
+                _ => {}
+            }
+        }
+        found
     }
 
     /// The module without its other entry points, and without the functions and variables that are theirs

@@ -69,14 +69,15 @@ impl Timer {
     /// The time between the timestamps, once the submission is done; `None` if the device did
     /// not write any.
     pub(super) fn elapsed(&self, mapped: &Mapped) -> Option<Duration> {
-        mapped.try_recv().ok()?.ok()?;
-        let ticks = {
-            let view = self.readable.get_mapped_range(..);
-            view.ok().and_then(|view| {
-                let ticks: Vec<u64> = bytemuck::pod_collect_to_vec(&view[..]);
-                ticks[1].checked_sub(ticks[0])
-            })
-        };
+        let is_mapped = matches!(mapped.try_recv(), Ok(Ok(())));
+        let view = is_mapped
+            .then(|| self.readable.get_mapped_range(..).ok())
+            .flatten();
+        let ticks = view.and_then(|view| {
+            let ticks: Vec<u64> = bytemuck::pod_collect_to_vec(&view[..]);
+            ticks[1].checked_sub(ticks[0])
+        });
+        // Also where the mapping did not come in time: the next launch writes to the buffer.
         self.readable.unmap();
         // A driver may write nonsense, which is no time.
         let seconds =

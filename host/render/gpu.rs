@@ -13,7 +13,7 @@ use super::pace::Pace;
 use super::tiles::Tiles;
 use super::{Progress, QUIET, Settings, Timings, check_whole};
 use crate::accuracy::canary::Canary;
-use crate::device::{Access, Buffer, Gpu, Kernel};
+use crate::device::{Access, Buffer, Gpu, Kernel, Staging};
 use crate::error::{Error, Result};
 use crate::film;
 use crate::kernel_module;
@@ -216,7 +216,7 @@ pub fn render_paced(
         |target, start, count| {
             let reading = Instant::now();
             let pixels = &mut image[start..start + count];
-            gpu.read_into(target, pixels)?;
+            gpu.read_through(&target.staging, &target.pixels, pixels)?;
             check_written(gpu, pixels)?;
             readback += reading.elapsed();
             Ok(())
@@ -250,14 +250,16 @@ fn each_tile(
     world: &Prepared,
     pace: &mut Pace,
     progress: Progress<'_>,
-    mut finished: impl FnMut(&Buffer<Pixel>, usize, usize) -> Result<()>,
+    mut finished: impl FnMut(&Target, usize, usize) -> Result<()>,
 ) -> Result<Timings> {
     let started = Instant::now();
     let size = launch.image_size;
     let tiles = Tiles::new::<Pixel>(gpu, size);
+    let pixels = gpu.zeroed("pixels", tiles.max_pixels())?;
     let target = Target {
         launch: gpu.upload_uniform("launch", launch)?,
-        pixels: gpu.zeroed("pixels", tiles.max_pixels())?,
+        staging: gpu.staging(&pixels, tiles.max_pixels())?,
+        pixels,
     };
     let mut timings = Timings {
         setup: started.elapsed(),
@@ -282,7 +284,7 @@ fn each_tile(
         if !is_whole {
             break;
         }
-        finished(&target.pixels, start, count)?;
+        finished(&target, start, count)?;
         if progress((start + count) as f64 / all as f64).is_break() {
             break;
         }
@@ -295,6 +297,8 @@ fn each_tile(
 struct Target {
     launch: Buffer<Launch>,
     pixels: Buffer<Pixel>,
+    /// What they are read through.
+    staging: Staging,
 }
 
 /// Renders one tile against every part of the world. Returns how long that took, and whether every sphere was tested: not where

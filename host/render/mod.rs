@@ -27,7 +27,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use glam::Vec3;
-use spherule_kernel::{Camera, Hit, Launch, Pixel, Rung, Shading};
+use spherule_kernel::{Camera, Hit, Launch, PathLaunch, Pixel, Rung, Shading};
 
 use crate::device::Device;
 use crate::error::{Error, Result, SceneError};
@@ -306,6 +306,27 @@ fn check_whole(launch: &Launch) -> Result<()> {
         tile_size: launch.image_size,
         ..*launch
     })
+}
+
+/// Whether light paths are to be traced for an image that can be, all of it.
+fn check_path_launch(launch: &PathLaunch) -> Result<()> {
+    check_launch(&Launch {
+        image_size: launch.image_size,
+        tile_origin: launch.tile_origin,
+        tile_size: launch.tile_size,
+        ..Launch::default()
+    })?;
+    if launch.tile_size == launch.image_size {
+        return Ok(());
+    }
+    Err(Error::Scene(SceneError::without_place(
+        "",
+        format!(
+            "light paths are to be traced for {} of {} pixels",
+            launch.tile_size, launch.image_size
+        ),
+        "leave the launch as paths::Prepared::new makes it; parts of it are chosen by the device",
+    )))
 }
 
 /// Whether these are as many pixels as a launch has, which was checked.

@@ -28,10 +28,12 @@ impl Tiles {
             .min(limits.max_buffer_size);
         Self {
             size,
-            threads: u64::from(limits.max_compute_workgroups_per_dimension) * WORKGROUP_SIDE,
+            // A device that has none refuses the launch.
+            threads: u64::from(limits.max_compute_workgroups_per_dimension.max(1)) * WORKGROUP_SIDE,
             max_pixels: (binding / size_of::<T>() as u64)
                 .min(MAX_PIXELS)
-                .min(u64::from(size.x) * u64::from(size.y)),
+                .min(u64::from(size.x) * u64::from(size.y))
+                .max(1),
         }
     }
 

@@ -7,6 +7,7 @@ use std::path::Path;
 use rayon::prelude::*;
 
 use crate::error::{Error, Result, SceneError};
+use crate::memory;
 
 /// Reads a whole text file.
 ///
@@ -77,9 +78,24 @@ fn read_bytes(path: &Path) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     file.by_ref().take(1).read_to_end(&mut bytes)?;
     if bytes != [0] {
-        file.read_to_end(&mut bytes)?;
+        read_stream(&mut file, &mut bytes)?;
     }
     Ok(bytes)
+}
+
+/// Reads what need not have an end, for as long as there is memory for it.
+fn read_stream(stream: &mut impl Read, bytes: &mut Vec<u8>) -> io::Result<()> {
+    loop {
+        let room = bytes.len().max(PIECE);
+        memory::require(room as u64, "reading").map_err(|_| io::ErrorKind::OutOfMemory)?;
+        bytes
+            .try_reserve(room)
+            .map_err(|_| io::ErrorKind::OutOfMemory)?;
+        let read = stream.by_ref().take(room as u64).read_to_end(bytes)?;
+        if read < room {
+            return Ok(());
+        }
+    }
 }
 
 /// Reads `length` bytes, `piece` at once.

@@ -377,8 +377,9 @@ impl<'a> Part<'a> {
     }
 
     /// Of equal spheres the one with the lowest index, the rest left out: wherever a ray meets the
-    /// others it meets that one, too, and of equal hits the lowest index is kept. Boxes stay as they
-    /// are. Done only where the middles are in one place, which costs ordinary worlds nothing.
+    /// others it meets that one, too. Boxes stay as they are. Done only where the middles are in one place, which costs ordinary
+    /// worlds nothing; elsewhere a ray that meets equal spheres finds the one that comes first in the tree, which need not be
+    /// the one with the lowest index.
     fn without_copies(self, given: Given<'_>) -> Self {
         if !self.is_in_one_place() {
             return self;

@@ -135,7 +135,9 @@ impl<'a> GpuTracer<'a> {
         let mut hits = self.gpu.read(&batch.hits)?;
         if !self.order.is_empty() {
             for hit in hits.iter_mut().filter(|hit| hit.is_some()) {
-                hit.sphere = self.order[hit.sphere as usize];
+                // Another tracer's batch names spheres that are not here.
+                let sphere = self.order.get(hit.sphere as usize).copied();
+                hit.sphere = sphere.unwrap_or(Hit::NONE_SPHERE);
             }
         }
         Ok(hits)

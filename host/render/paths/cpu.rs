@@ -14,6 +14,7 @@ use super::{Prepared, Progress, Sampled, Settings};
 use crate::error::{Error, Result};
 use crate::film;
 use crate::render::Timings;
+use crate::render::check_path_launch;
 use crate::trace::levels::Levels;
 use crate::trace::single::Single;
 
@@ -51,8 +52,10 @@ type Trace = fn(
 ///
 /// # Errors
 ///
-/// [`OutOfHostMemory`](crate::Error::OutOfHostMemory) if the host has no room for the image.
+/// [`OutOfHostMemory`](crate::Error::OutOfHostMemory) if the host has no room for the image,
+/// [`Error::Scene`](crate::Error::Scene) if the launch is not one of a whole image.
 pub fn render(prepared: &Prepared, settings: &Settings, progress: Progress<'_>) -> Result<Sampled> {
+    check_path_launch(&prepared.launch)?;
     let begun = Instant::now();
     let trace = trace_for(prepared.compiled, settings.rung);
     let size = prepared.launch.image_size;

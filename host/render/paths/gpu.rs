@@ -11,11 +11,12 @@ use super::budget::{Budget, Reached, StoppedBy, noise};
 use super::preview::Preview;
 use super::{Prepared, Progress, Sampled, Settings};
 use crate::accuracy::canary::Canary;
-use crate::device::{Access, Buffer, Gpu, Kernel};
+use crate::device::{Access, Buffer, Gpu, Kernel, Staging};
 use crate::error::{Error, Result};
 use crate::film;
 use crate::kernel_module;
 use crate::render::Timings;
+use crate::render::check_path_launch;
 use crate::render::pace::Pace;
 use crate::render::tiles::Tiles;
 
@@ -60,6 +61,8 @@ struct Launcher<'a> {
     tables: Buffer<f32>,
     nodes: Buffer<Node>,
     sums: Buffer<Accumulator>,
+    /// What they are read through.
+    staging: Staging,
     /// What a sample takes, in intersections; the fewest pixels of a launch; and what it gets as far as is known.
     work: u64,
     fewest: u64,
@@ -80,6 +83,7 @@ impl<'a> Launcher<'a> {
         } else {
             FEWEST_ON_GPU
         };
+        let sums = gpu.zeroed("accumulators", pixels)?;
         Ok(Self {
             gpu,
             kernel,
@@ -91,7 +95,8 @@ impl<'a> Launcher<'a> {
             lights: gpu.upload("lights", &prepared.lights)?,
             tables: gpu.upload("tables", &prepared.tables)?,
             nodes: gpu.upload("nodes", &prepared.nodes)?,
-            sums: gpu.zeroed("accumulators", pixels)?,
+            staging: gpu.staging(&sums, pixels)?,
+            sums,
             work,
             fewest,
             // What a sample takes by fog, glass or bounces is known only from the first of them. On a GPU few pixels take as
@@ -150,7 +155,7 @@ impl<'a> Launcher<'a> {
 
     /// Reads the sums of the first pixels.
     fn read(&self, pixels: &mut [Accumulator]) -> Result<()> {
-        self.gpu.read_into(&self.sums, pixels)
+        self.gpu.read_through(&self.staging, &self.sums, pixels)
     }
 }
 
@@ -169,14 +174,15 @@ fn rows(width: u32, pixels: u64, alignment: u32) -> u32 {
 ///
 /// # Errors
 ///
-/// The device's errors, [`Error::RungRefused`] if the canary objects to the rung, and
-/// [`Error::Readback`] if a thread wrote no pixel.
+/// The device's errors, [`Error::RungRefused`] if the canary objects to the rung,
+/// [`Error::Readback`] if a thread wrote no pixel, and [`Error::Scene`] if the launch is not one of a whole image.
 pub fn render(
     gpu: &Gpu,
     prepared: &Prepared,
     settings: &Settings,
     progress: Progress<'_>,
 ) -> Result<Sampled> {
+    check_path_launch(&prepared.launch)?;
     let started = Instant::now();
     let size = prepared.launch.image_size;
     let mut image = film::allocate::<Accumulator>(size.x, size.y)?;

@@ -6,9 +6,15 @@ use bytemuck::Zeroable;
 use spirv_std::arch::IndexUnchecked;
 
 /// An element; the last for an index beyond it.
+///
+/// ```compile_fail
+/// // An array without elements has no last one.
+/// spherule_kernel::arithmetic::elements::get(&[0_u32; 0], 3);
+/// ```
 #[inline]
 #[must_use]
 pub fn get<T: Copy, const N: usize>(array: &[T; N], index: usize) -> T {
+    const { assert!(N > 0, "an array without elements has none to read") };
     // SAFETY: below N.
     unsafe { *array.index_unchecked(index.min(N - 1)) }
 }
@@ -16,6 +22,7 @@ pub fn get<T: Copy, const N: usize>(array: &[T; N], index: usize) -> T {
 /// Writes what [`get`] reads.
 #[inline]
 pub fn set<T, const N: usize>(array: &mut [T; N], index: usize, value: T) {
+    const { assert!(N > 0, "an array without elements has none to write") };
     // SAFETY: below N.
     unsafe { *array.index_unchecked_mut(index.min(N - 1)) = value };
 }

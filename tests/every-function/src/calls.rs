@@ -446,8 +446,8 @@ pub const CALLS: &[Call] = &[
         seen(spherule::device::buffer::Buffer::len(&s.draw()))
     })
     .on_gpu(),
-    Call::new("spherule::device::errors::is_waiting", |_| {
-        seen(spherule::device::is_waiting())
+    Call::new("spherule::device::errors::is_catching", |_| {
+        seen(spherule::device::is_catching())
     }),
     Call::new("spherule::device::gpu::Gpu::clear", |s| {
         seen(spherule::device::gpu::Gpu::clear::<u32>(s.gpu(), &s.draw()))

@@ -1095,14 +1095,17 @@ impl Odd for paths::Prepared {
                 6 => prepared.tables = Odd::odd(s),
                 7 => prepared.samples = s.below(4) as u32,
                 8 => {
-                    let (size, tile) = (prepared.launch.image_size, prepared.launch.tile_size);
+                    let plain = prepared.launch;
                     prepared.launch = PathLaunch {
-                        image_size: size,
-                        tile_size: tile,
                         sample_count: s.below(4) as u32,
                         max_bounces: s.below(9) as u32,
                         ..Odd::odd(s)
                     };
+                    if s.below(3) > 0 {
+                        prepared.launch.image_size = plain.image_size;
+                        prepared.launch.tile_size = plain.tile_size;
+                        prepared.launch.tile_origin = plain.tile_origin;
+                    }
                 }
                 _ => prepared.compiled = Odd::odd(s),
             }
