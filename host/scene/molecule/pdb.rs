@@ -54,6 +54,14 @@ pub fn parse(text: &str) -> Result<Vec<Atom>, WrongLine> {
                 break;
             }
             "MODEL" if !atoms.is_empty() => break,
+            _ if is_misplaced_atom(line.0) => {
+                return Err(WrongLine::new(
+                    number,
+                    "this atom's record name is not in its columns",
+                    "neither `ATOM  ` nor `HETATM`",
+                    "write ATOM or HETATM in capitals from the line's first column on, and after ATOM two blanks",
+                ));
+            }
             _ => {}
         }
     }
@@ -75,6 +83,20 @@ pub fn parse(text: &str) -> Result<Vec<Atom>, WrongLine> {
         ));
     }
     Ok(atoms)
+}
+
+/// Whether a line that begins with no record name of an atom was meant to.
+fn is_misplaced_atom(line: &[u8]) -> bool {
+    let line = line.trim_ascii_start();
+    ["ATOM", "HETATM"].iter().any(|name| {
+        line.split_at_checked(name.len())
+            .is_some_and(|(start, rest)| {
+                start.eq_ignore_ascii_case(name.as_bytes())
+                    && rest
+                        .first()
+                        .is_some_and(|next| next.is_ascii_digit() || next.is_ascii_whitespace())
+            })
+    })
 }
 
 fn position(line: &Columns<'_>, number: usize) -> Result<Vec3, WrongLine> {
@@ -328,6 +350,12 @@ mod tests {
             (format!("{good}\n{}", good.replace("1.000", "-1e18")), 1),
             (format!("{good}\n{}", good.replace("1.000", "é.000")), 1),
             ("HEADER\nEND\n".into(), 1),
+            // Not left out without a word.
+            (format!("{good}\n{}", good.replace("ATOM  ", "atom  ")), 1),
+            (format!("{good}\n{}", good.replace("ATOM  ", " ATOM ")), 1),
+            (format!("{good}\n{}", good.replace("ATOM   ", "ATOM 10")), 1),
+            (format!("{good}\n{}", good.replace("ATOM   ", "ATOM100")), 1),
+            (format!("{good}\n{}", good.replace("ATOM  ", " HETATM")), 1),
             (String::new(), 0),
         ] {
             let wrong = parse(&text).expect_err(&text);

@@ -51,7 +51,7 @@ pub fn parse(text: &str) -> Result<Vec<Atom>, WrongLine> {
         ));
     }
 
-    let (blocks, lines) = blocks(rest, count);
+    let (blocks, lines, rest) = blocks(rest, count);
     let mut atoms = Vec::new();
     atoms.try_reserve_exact(lines).map_err(|_| {
         WrongLine::new(
@@ -79,6 +79,22 @@ pub fn parse(text: &str) -> Result<Vec<Atom>, WrongLine> {
     }
     if lines < count {
         return Err(missing(FIRST_ATOM + lines - 1, count, lines));
+    }
+    if let Some((line, _)) = rest
+        .lines()
+        .enumerate()
+        .find(|(_, line)| !line.trim().is_empty())
+        .filter(|(_, line)| line.trim().parse::<usize>().is_err())
+    {
+        return Err(WrongLine::new(
+            FIRST_ATOM + count + line,
+            format!(
+                "the file promises {}, and after them there is neither its end nor another frame",
+                count_of(count, "atom")
+            ),
+            "one more line",
+            "write the number of all atoms on the first line, or take away what follows them",
+        ));
     }
     if dummies > 0 {
         tracing::warn!("left out: {}", count_of(dummies, "dummy atom"));
@@ -110,9 +126,10 @@ struct Block<'a> {
     text: &'a str,
 }
 
-/// The first `count` lines, or all that there are, in blocks; and how many they are.
-fn blocks(text: &str, count: usize) -> (Vec<Block<'_>>, usize) {
+/// The first `count` lines, or all that there are, in blocks; how many they are; and what follows them.
+fn blocks(text: &str, count: usize) -> (Vec<Block<'_>>, usize, &str) {
     let mut blocks = Vec::new();
+    let mut end = 0;
     let (mut rest, mut before) = (text, 0);
     while before < count && !rest.is_empty() {
         let mut cut = Vec::new();
@@ -130,6 +147,7 @@ fn blocks(text: &str, count: usize) -> (Vec<Block<'_>>, usize) {
                 lines = count - before;
                 text = &text[..text.split_inclusive('\n').take(lines).map(str::len).sum()];
             }
+            end += text.len();
             if lines > 0 {
                 blocks.push(Block {
                     before,
@@ -140,7 +158,7 @@ fn blocks(text: &str, count: usize) -> (Vec<Block<'_>>, usize) {
             before += lines;
         }
     }
-    (blocks, before)
+    (blocks, before, &text[end..])
 }
 
 /// How many lines a text has, the last of which need not end.
@@ -285,6 +303,37 @@ mod tests {
         let symbols: Vec<&str> = atoms.iter().map(|atom| atom.element.symbol).collect();
         assert_eq!(symbols, ["C", "Cl", "Fe", "O"]);
         assert_eq!(atoms[2].position.x, 2.0);
+    }
+
+    #[test]
+    fn nothing_after_a_frame_is_dropped_without_a_word() {
+        for (after, line) in [
+            ("C 6 0 0\n", Some(4)),
+            ("C 6 0 0", Some(4)),
+            ("\n \r\nC 6 0 0\n", Some(6)),
+            ("2.5\n", Some(4)),
+            ("", None),
+            ("\n\n \t\r\n", None),
+            ("1\nnext\nC 6 0 0\n", None),
+            ("\n1\r\nnext\r\n", None),
+        ] {
+            let text = format!("2\n\nC 0 0 0\nC 3 0 0\n{after}");
+            match (parse(&text), line) {
+                (Ok(atoms), None) => assert_eq!(atoms.len(), 2),
+                (Err(wrong), Some(line)) => assert_eq!(wrong.line, line, "{text:?}"),
+                (read, _) => panic!("{text:?}: {read:?}"),
+            }
+        }
+        // Where the frame ends far from where a block does, too.
+        for count in [3, 30_000, 65_000] {
+            let mut text = format!("{count}\n\n");
+            for atom in 0..count {
+                text += &format!("H {atom} 0 1.5\n");
+            }
+            assert_eq!(parse(&text).expect("atoms").len(), count);
+            text += "H 1 2 3\n";
+            assert_eq!(parse(&text).expect_err("an atom more").line, count + 2);
+        }
     }
 
     #[test]
