@@ -22,7 +22,7 @@ use crate::error::{Error, Place, Result, SceneError};
 use crate::plural::count_of;
 use crate::shown::{shown, shown_up_to};
 use split::{Batch, Piece, Split};
-use value::{Value, said};
+use value::{DATE, Value, said};
 
 /// The angle across the sun as it is seen from the Earth, in degrees.
 const DEFAULT_SUN_SIZE: f32 = 0.53;
@@ -222,9 +222,12 @@ fn help_for_toml(message: &str) -> String {
     }
 }
 
-/// serde's words in plain ones.
+/// serde's words, and the parser's, in plain ones.
 fn plain(message: &str) -> String {
     let mut message = message.to_owned();
+    if message.contains(DATE) {
+        return "this is a date or time, not a table".into();
+    }
     for (theirs, ours) in [
         ("invalid type: ", "this is "),
         (", expected a sequence", ", not a list"),
@@ -236,6 +239,7 @@ fn plain(message: &str) -> String {
         ("this is string ", "this is the text "),
         ("this is map", "this is a table"),
         ("this is sequence", "this is a list"),
+        ("recursion limit", "a key has more than 80 parts"),
     ] {
         message = message.replacen(theirs, ours, 1);
     }
@@ -257,8 +261,11 @@ impl Reader<'_> {
         toml::from_str(text).map_err(|error| {
             let message = plain(error.message().trim());
             let help = help_for_toml(&message);
-            let span = error.span().unwrap_or(0..text.len().min(1));
             let message = shown_up_to(&message, 400).into_owned();
+            // The parser does not say where everything is.
+            let Some(span) = error.span() else {
+                return SceneError::without_place(self.path, message, help).into();
+            };
             self.wrong_at(span, message, "here", help).into()
         })
     }
@@ -1355,7 +1362,19 @@ radius = 100
                 "material = \"red\"",
                 "material = 1979-05-27",
                 19,
-                "material is a table, not a text",
+                "material is a date or time, not a text",
+            ),
+            (
+                "center = [0, 0, -3]",
+                "center = 2020-01-01",
+                17,
+                "center is a date or time, not a list of three numbers",
+            ),
+            (
+                "center = [0, 0, -3]",
+                "center = [0, 07:32:00, -3]",
+                17,
+                "center holds a date or time, not three numbers",
             ),
             ("radius = 0.5", "radius = 1e-40", 18, "radius = 1e-40"),
             ("radius = 100", "radius = 1e18", 22, "beyond 1e18"),
@@ -1398,12 +1417,27 @@ radius = 100
         }
     }
 
+    /// The parser does not say where a key of many parts is; no other place is shown for it.
+    #[test]
+    fn a_mistake_without_a_place_has_none() {
+        let key = ["a"; 100].join(".");
+        for text in [format!("{GOOD}\n{key} = 1\n"), format!("\n[{key}]\n")] {
+            let error = read(&text).expect_err("a long key");
+            let Error::Scene(error) = error else {
+                panic!("{error:?}")
+            };
+            assert!(error.message.contains("more than 80 parts"), "{error}");
+            assert!(error.place.is_none(), "{error}");
+        }
+    }
+
     /// Each new mistake in a scene of its own: what the scene has besides a sphere, and a word of
     /// the message.
     #[test]
     fn each_key_of_the_effects_refuses_what_it_cannot_be() {
         let cases = [
             ("camera = 5", "this is the whole number `5`, not a table"),
+            ("camera = 2020-01-01", "this is a date or time, not a table"),
             ("[image]\nsamples = 0", "samples = 0"),
             ("[image]\nsamples = 65537", "65537"),
             ("[image]\nmax_bounces = -1", "max_bounces = -1"),

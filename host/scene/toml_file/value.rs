@@ -17,7 +17,12 @@ pub(super) enum Value {
     /// Its numbers, and what it holds besides, if anything.
     List(Vec<f64>, Option<String>),
     Table,
+    /// A date, a time, or both, which no key takes.
+    Date,
 }
+
+/// The name of the one key of a table that a date is for serde.
+pub(super) const DATE: &str = "$__toml_private_datetime";
 
 impl Value {
     /// What it is, as the end of "width is …".
@@ -29,6 +34,7 @@ impl Value {
             Self::Text(text) => format!("the text \"{}\"", shown(text)),
             Self::List(..) => "a list".into(),
             Self::Table => "a table".into(),
+            Self::Date => "a date or time".into(),
         }
     }
 
@@ -109,7 +115,12 @@ impl<'de> Visitor<'de> for AnyValue {
     }
 
     fn visit_map<A: MapAccess<'de>>(self, mut table: A) -> Result<Value, A::Error> {
-        while table.next_entry::<IgnoredAny, IgnoredAny>()?.is_some() {}
-        Ok(Value::Table)
+        let mut value = Value::Table;
+        while let Some((key, IgnoredAny)) = table.next_entry::<String, IgnoredAny>()? {
+            if key == DATE {
+                value = Value::Date;
+            }
+        }
+        Ok(value)
     }
 }
