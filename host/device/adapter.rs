@@ -183,6 +183,18 @@ pub(super) fn memory_limit() -> String {
     })
 }
 
+/// Whether drivers, which start threads of their own, may start none, as the end of a sentence.
+pub(super) fn threads_limit() -> &'static str {
+    match std::thread::Builder::new().spawn(|| ()) {
+        Ok(thread) => {
+            // It does nothing that could panic.
+            let _ = thread.join();
+            ""
+        }
+        Err(_) => "; the system starts no more threads (ulimit -u), and a driver may need some",
+    }
+}
+
 /// The adapter that `choice` means, or `None` for the CPU; with the reason in a few words.
 ///
 /// # Errors

@@ -167,7 +167,7 @@ impl Gpu {
         }))
         .map_err(|error| Error::DeviceRefused {
             adapter: name.clone(),
-            reason: one_line(&error) + &adapter::memory_limit(),
+            reason: one_line(&error) + &adapter::memory_limit() + adapter::threads_limit(),
         })?;
         let watch = Watch::over(&device, &name);
         let timer = if features.contains(wgpu::Features::TIMESTAMP_QUERY) {
