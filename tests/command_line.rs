@@ -283,6 +283,48 @@ fn wrong_arguments_are_refused() {
     }
 }
 
+/// What stands in arguments is shown, and no terminal obeys it.
+#[test]
+fn no_argument_speaks_to_the_terminal() {
+    let odd = "\u{1b}[2J\u{1b}]0;pwn\u{7}\u{202e}";
+    for arguments in [
+        &["render", "s.toml", "--{}foo"][..],
+        &["render", "s.toml", "{}", "{}"],
+        &["{}"],
+        &["render", "s.toml", "--device", "cpu", "--size", "{}"],
+        &["render", "s.toml", "--shade={}"],
+        &["render", "s.toml", "--effects", "fog{}"],
+        &["render", "s.toml", "-o", "{}"],
+        &["render", "s{}.toml"],
+        &["render", "s.toml", "--device", "{}"],
+        &["accuracy", "--scene", "{}"],
+        &["bench", "--scene", "{}"],
+    ] {
+        let arguments: Vec<String> = arguments.iter().map(|a| a.replace("{}", odd)).collect();
+        let output = spherule()
+            .args(&arguments)
+            // As on a terminal, where colours are left in what is printed.
+            .env("CLICOLOR_FORCE", "1")
+            .output()
+            .expect("it runs");
+        let said = String::from_utf8(output.stderr).expect("text");
+        assert_ne!(output.status.code(), Some(0), "{arguments:?}");
+        for control in ["\u{1b}[2J", "\u{1b}]", "\u{7}", "\u{202e}"] {
+            assert!(!said.contains(control), "{arguments:?}: {said:?}");
+        }
+    }
+    let long = "x".repeat(100_000);
+    for name in ["SPHERULE_LOG", "RAYON_NUM_THREADS"] {
+        let output = spherule()
+            .args(["render", "no.toml", "--device", "cpu"])
+            .env(name, &long)
+            .output()
+            .expect("it runs");
+        let said = String::from_utf8(output.stderr).expect("text");
+        assert!(said.contains(name) && said.len() < 2000, "{}", said.len());
+    }
+}
+
 /// No argument makes a command panic or hang, whatever its number or its name.
 #[test]
 fn odd_arguments_are_refused_in_every_command() {

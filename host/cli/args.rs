@@ -13,6 +13,7 @@ use crate::error::nearest;
 use crate::render::paths::EffectChoice;
 use crate::scene::limits::{MAX_BOUNCES, MAX_IMAGE_SIDE, MAX_SAMPLES};
 use crate::scene::tree::Acceleration;
+use crate::shown::shown;
 use crate::write::Format;
 
 /// A ray tracer for spheres, whose kernel is Rust on the GPU and on the CPU.
@@ -316,7 +317,8 @@ fn subject(text: &str) -> Result<Subject, String> {
         None => {
             let names: Vec<&str> = Family::ALL.iter().map(|family| family.name()).collect();
             Err(format!(
-                "there is no family `{text}`{} Give one of {}, or a scene file (.toml, .pdb, .ent or .xyz)",
+                "there is no family `{}`{} Give one of {}, or a scene file (.toml, .pdb, .ent or .xyz)",
+                shown(text),
                 did_you_mean(text, &names),
                 names.join(", ")
             ))
@@ -402,7 +404,7 @@ fn effects(text: &str) -> Result<EffectChoice, String> {
                 let likely = did_you_mean(name.trim(), &known);
                 return Err(format!(
                     "there is no effect `{}`{likely} Give auto, all, none, or some of {}, separated by commas",
-                    name.trim(),
+                    shown(name.trim()),
                     known.join(", ")
                 ));
             }

@@ -32,7 +32,7 @@ use args::{Arguments, Command};
 use crate::error::{Error, Result, SceneError};
 use crate::plural::count_of;
 use crate::scene::Scene;
-use crate::shown::shown_path;
+use crate::shown::{shown, shown_lines, shown_path};
 use crate::threads::{self, Fewer};
 use crate::write::Output;
 pub use last_resort::{Allocator, spare_addresses};
@@ -59,11 +59,11 @@ pub fn run(arguments: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> 
     interrupt::install();
     last_resort::install();
     start_log();
-    let arguments = match Arguments::try_parse_from(arguments) {
+    let words: Vec<OsString> = arguments.into_iter().map(Into::into).collect();
+    let arguments = match Arguments::try_parse_from(&words) {
         Ok(arguments) => arguments,
         Err(error) => {
-            // A help that was asked for is no error and goes to stdout.
-            let _ = error.print();
+            print_refusal(&error, &words);
             return u8::try_from(error.exit_code()).map_or(ExitCode::FAILURE, ExitCode::from);
         }
     };
@@ -85,16 +85,36 @@ pub fn run(arguments: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> 
     }
 }
 
+/// Prints what is wrong with these words, of which a terminal is to obey none, or the help that was asked for, which is no error and
+/// goes to stdout.
+fn print_refusal(error: &clap::Error, words: &[OsString]) {
+    let shown: Vec<OsString> = words
+        .iter()
+        .map(|word| shown_path(word.as_ref()).into())
+        .collect();
+    let printed = if shown == words {
+        error.print()
+    } else {
+        // What is wrong with the words as they are shown is the same, but for the words.
+        match Arguments::try_parse_from(&shown) {
+            Err(again) if again.kind() == error.kind() => again.print(),
+            _ => {
+                note(&shown_lines(&error.to_string()));
+                Ok(())
+            }
+        }
+    };
+    // Nobody may listen.
+    drop(printed);
+}
+
 /// Starts as many threads as `RAYON_NUM_THREADS` says, or one for each processor.
 fn start_threads() -> Result<()> {
     const NAME: &str = "RAYON_NUM_THREADS";
     let refused = |text: &str| {
         SceneError::without_place(
             "",
-            format!(
-                "{NAME} is `{}`, which is no number of threads",
-                text.escape_debug()
-            ),
+            format!("{NAME} is `{}`, which is no number of threads", shown(text)),
             format!(
                 "give a number from 1 to {}, or unset it for one for each processor",
                 threads::most()
@@ -208,7 +228,7 @@ fn log_filter(wish: &str, quiet: &Targets) -> Result<Targets, String> {
     let mut filter = quiet.clone();
     for part in wish.split(',').map(str::trim).filter(|p| !p.is_empty()) {
         let (target, level) = part.split_once('=').unwrap_or(("spherule", part));
-        let no_level = || format!("`{}` is no level", level.trim().escape_default());
+        let no_level = || format!("`{}` is no level", shown(level.trim()));
         // What is empty would be taken for "error".
         if level.trim().is_empty() {
             return Err(no_level());
