@@ -639,6 +639,20 @@ fn images_do_not_depend_on_how_the_work_is_cut() {
     }
 }
 
+/// A small image takes many samples in one launch, whose loops a software adapter leaves after 65,535 turns.
+#[test]
+fn small_images_have_all_of_their_samples() {
+    if skips("small_images_have_all_of_their_samples") {
+        return;
+    }
+    let scene = gallery("one-weekend", 11, 6, 4096);
+    for adapter in all_adapters() {
+        let device = Device::Gpu(Box::new(open(adapter, GpuOptions::default())));
+        let rendered = render(&scene, Settings::default(), &device, QUIET).expect("an image");
+        assert_eq!(rendered.rays, 66 * 4096);
+    }
+}
+
 #[test]
 fn a_noise_target_ends_a_render() {
     let scene = gallery("soft-light", 48, 32, MAX_SAMPLES);

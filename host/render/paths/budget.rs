@@ -46,6 +46,8 @@ pub(super) struct Budget {
     samples: u32,
     done: u32,
     next: u32,
+    /// The most of a launch.
+    most: u32,
     deadline: Option<Instant>,
     noise: Option<f64>,
     /// At which number of samples the noise is looked at next.
@@ -58,9 +60,18 @@ impl Budget {
             samples,
             done: 0,
             next: 1,
+            most: u32::MAX,
             deadline,
             noise,
             look_at: 16,
+        }
+    }
+
+    /// With no more samples in a launch than these, of which there is one.
+    pub(super) fn with_at_most(self, most: u32) -> Self {
+        Self {
+            most: most.max(1),
+            ..self
         }
     }
 
@@ -72,7 +83,10 @@ impl Budget {
                 Some(_) if self.look_at > self.done => self.look_at - self.done,
                 _ => left,
             };
-            (self.done, self.next.min(left).min(until_look))
+            (
+                self.done,
+                self.next.min(self.most).min(left).min(until_look),
+            )
         })
     }
 
@@ -167,6 +181,25 @@ mod tests {
         let mut budget = Budget::new(1000, None, None);
         assert_eq!(run(&mut budget, |_| 1.0), (1000, StoppedBy::Samples));
         assert_eq!(budget.next(), None);
+    }
+
+    #[test]
+    fn no_launch_has_more_than_it_may() {
+        let mut budget = Budget::new(1000, None, None).with_at_most(7);
+        let mut launches = 0;
+        while let Some((first, count)) = budget.next() {
+            assert!(count <= 7 && first == budget.done());
+            launches += 1;
+            budget
+                .took(count, Duration::ZERO, || Ok::<_, ()>(1.0))
+                .expect("no error");
+        }
+        assert_eq!((budget.done(), launches), (1000, 144));
+        // One is always taken.
+        assert_eq!(
+            Budget::new(5, None, None).with_at_most(0).next(),
+            Some((0, 1))
+        );
     }
 
     #[test]

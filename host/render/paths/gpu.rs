@@ -29,6 +29,11 @@ const RAYS_A_SAMPLE: u64 = 4;
 /// The fewest pixels of a launch: fewer threads leave a GPU idle, and then it takes as long however little it does.
 const FEWEST_ON_GPU: u64 = 1 << 16;
 const FEWEST_IN_SOFTWARE: u64 = 1 << 12;
+/// How many turns Mesa's software adapter, llvmpipe, takes in all of the loops of a thread together: it leaves them after that without a
+/// word.
+const TURNS_IN_SOFTWARE: u64 = u16::MAX as u64;
+/// The turns of a ray through a tree, for the same.
+const TURNS_IN_A_TREE: u64 = 64;
 
 /// Compiles the kernel for these settings.
 ///
@@ -159,6 +164,21 @@ impl<'a> Launcher<'a> {
     }
 }
 
+/// The most samples of a launch: a small image is else given so many that a software adapter does not take all of them.
+fn most_samples(gpu: &Gpu, prepared: &Prepared) -> u32 {
+    if !gpu.is_software() {
+        return u32::MAX;
+    }
+    let tests = if prepared.nodes.is_empty() {
+        prepared.world.spheres.len() as u64
+    } else {
+        TURNS_IN_A_TREE
+    };
+    // A ray on and one to a light from the camera's vertex and from that of each bounce.
+    let turns = (u64::from(prepared.launch.max_bounces) + 1) * (1 + 2 * tests);
+    (TURNS_IN_SOFTWARE / turns) as u32
+}
+
 /// How many rows make at least so many pixels, if each launch's first is to lie in memory where the device takes it.
 fn rows(width: u32, pixels: u64, alignment: u32) -> u32 {
     let pixel = size_of::<Accumulator>() as u64;
@@ -223,7 +243,8 @@ pub fn render(
             let left = Duration::try_from_secs_f64(left * share).ok()?;
             Instant::now().checked_add(left)
         });
-        let mut budget = Budget::new(prepared.samples, deadline, settings.noise);
+        let most = most_samples(gpu, prepared);
+        let mut budget = Budget::new(prepared.samples, deadline, settings.noise).with_at_most(most);
         let mut in_part = (0, 0);
         let is_interrupted = Cell::new(false);
         gpu.clear(&launcher.sums)?;
