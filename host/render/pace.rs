@@ -85,7 +85,8 @@ impl Pace {
         let wanted = (intersections as f64 * factor) as u64;
         // A small launch says nothing against a large one.
         if factor < 1.0 || wanted > self.intersections {
-            self.intersections = wanted.clamp(RANGE.0, RANGE.1);
+            // One that began below the range stays below it: after a slow launch none is larger.
+            self.intersections = wanted.clamp(RANGE.0.min(self.intersections), RANGE.1);
         }
     }
 }
@@ -133,6 +134,15 @@ mod tests {
         let tile = pace.tile(1920, UVec2::new(1920, 1080), 1 << 23, 1 << 32);
         assert!(u64::from(tile.x) * u64::from(tile.y) > MIN_TILE_PIXELS - 1920);
         assert_eq!(pace.spheres(MIN_TILE_PIXELS), 16);
+    }
+
+    #[test]
+    fn after_a_slow_launch_none_is_larger() {
+        for first in [1 << 10, 1 << 20, 1 << 30] {
+            let mut pace = Pace::starting_at(first);
+            pace.learn(first, Duration::from_secs(7));
+            assert!(pace.intersections <= first);
+        }
     }
 
     #[test]

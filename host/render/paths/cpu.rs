@@ -1,7 +1,7 @@
 //! The CPU path: the function that the GPU's entry point calls, over bands of rows.
 
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use glam::UVec2;
 use rayon::prelude::*;
@@ -20,8 +20,9 @@ use crate::trace::single::Single;
 
 /// Rows in a band.
 const BAND_ROWS: usize = 2;
-/// After so many pixels it is asked whether the render goes on.
+/// After so many pixels at most it is asked whether the render goes on; after fewer where they take longer than this.
 const RUN: usize = 16;
+const PATIENCE: Duration = Duration::from_millis(5);
 
 /// Effects of scenes whose light does not bounce.
 const LOCAL: u32 = Effects::ANTIALIASING
@@ -76,12 +77,13 @@ pub fn render(prepared: &Prepared, settings: &Settings, progress: Progress<'_>) 
     };
     let started = Instant::now();
     let mut preview = None;
-    if settings.time_limit.is_some() {
-        let mut coarse = Preview::of(&prepared.launch, accumulators.len())?;
-        let launch = coarse.launch;
-        if pass(&launch, &mut coarse.sums, &|_| progress(0.0).is_continue()) {
-            preview = Some(coarse);
-        }
+    if let Some(limit) = settings.time_limit {
+        let most = accumulators.len();
+        preview = Preview::finest(&prepared.launch, most, limit, |next, goes_on| {
+            let goes_on = |_| progress(0.0).is_continue() && goes_on();
+            let launch = next.launch;
+            Ok(pass(&launch, &mut next.sums, &goes_on))
+        })?;
     }
     let deadline = settings
         .time_limit
@@ -187,14 +189,26 @@ fn trace<const EFFECTS: u32, const RUNG: u32>(
         .par_chunks_mut(width * BAND_ROWS)
         .enumerate()
         .for_each(|(band, accumulators)| {
-            let mut before = 0;
-            for (run, accumulators) in accumulators.chunks_mut(RUN).enumerate() {
+            let mut first = width * BAND_ROWS * band;
+            let mut left = accumulators;
+            // One that takes long may be the first.
+            let (mut asked_at, mut run, mut before) = (Instant::now(), 0, 0);
+            while !left.is_empty() {
                 if !goes_on(before) {
                     return;
                 }
-                before = accumulators.len();
-                let first = width * BAND_ROWS * band + RUN * run;
+                let now = Instant::now();
+                run = if now - asked_at > PATIENCE {
+                    1
+                } else {
+                    (2 * run).clamp(1, RUN)
+                };
+                asked_at = now;
+                let (accumulators, others) = left.split_at_mut(run.min(left.len()));
                 trace_run::<EFFECTS, RUNG>(&scenery, width, first, accumulators);
+                before = accumulators.len();
+                first += before;
+                left = others;
             }
             goes_on(before);
         });

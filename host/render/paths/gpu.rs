@@ -218,13 +218,19 @@ pub fn render(
 
     let tracing = Instant::now();
     let mut preview = None;
-    if settings.time_limit.is_some() {
-        let mut coarse = Preview::of(&prepared.launch, tiles.max_pixels())?;
-        let go_on = |_| progress(0.0).is_continue();
-        let (done, took) = launcher.pass(&coarse.launch, go_on)?;
-        timings.trace += took;
-        launcher.read(&mut coarse.sums)?;
-        preview = (done == coarse.sums.len()).then_some(coarse);
+    if let Some(limit) = settings.time_limit {
+        let most = tiles.max_pixels();
+        preview = Preview::finest(&prepared.launch, most, limit, |next, goes_on| {
+            let goes_on = |_| progress(0.0).is_continue() && goes_on();
+            // In small sums of its own: to make those of a whole tile zero again takes longer.
+            let mut sums = gpu.zeroed("accumulators of a preview", next.sums.len())?;
+            std::mem::swap(&mut launcher.sums, &mut sums);
+            let (done, took) = launcher.pass(&next.launch, goes_on)?;
+            timings.trace += took;
+            launcher.read(&mut next.sums)?;
+            std::mem::swap(&mut launcher.sums, &mut sums);
+            Ok(done == next.sums.len())
+        })?;
     }
     let mut origin = UVec2::ZERO;
     let (mut fewest, mut stopped_by) = (u32::MAX, StoppedBy::Samples);
