@@ -16,8 +16,8 @@ use crate::scene::limits::MAX_SAMPLES;
 
 /// How many more samples the reference has than the last step.
 const REFERENCE: u32 = 16;
-/// How many more it has at least, where the time was up before it had all.
-const LEAST_REFERENCE: u32 = 8;
+/// How many more it has at least, where the time was up before it had all: against fewer an error is that of the reference.
+pub(crate) const LEAST_REFERENCE: u32 = 8;
 /// The part of the time there is that the reference may take. Where it has all of its samples the steps of three rungs take
 /// a quarter of the whole.
 const SHARE: f64 = 0.7;
@@ -65,7 +65,8 @@ pub struct Measured {
 
 /// Renders `scene` on `device` on each of `rungs` with 1, 2, 4, … up to `most` samples. The reference
 /// is of another seed, on the highest of the rungs, with sixteen times as many. All have fewer where they would not be done
-/// at `until`; only the first step is certain to be measured. `compiling` is what it took to compile a pipeline before, if
+/// at `until`. Where the reference has fewer than eight samples by then there are no steps, because noise would be measured
+/// against noise; else the first is measured in any case. `compiling` is what it took to compile a pipeline before, if
 /// one was.
 ///
 /// # Errors
@@ -116,7 +117,7 @@ pub fn measure(
         while samples <= most {
             let is_late = left().is_some_and(|left| left < expected);
             let is_near = reached < wanted && reached / samples < LEAST_REFERENCE;
-            if (is_late || is_near) && !steps.is_empty() {
+            if is_near || (is_late && !steps.is_empty()) {
                 is_cut = true;
                 break;
             }

@@ -22,8 +22,8 @@ use crate::device::Device;
 use crate::error::{Result, SceneError};
 use crate::memory;
 use crate::plural::count_of;
-use crate::render::fit::fit;
-use crate::render::{Progress, QUIET, Settings, render};
+use crate::render::fit::{fit, probe};
+use crate::render::{Progress, QUIET, Settings};
 use crate::scene::Scene;
 use crate::shown::shown_path;
 use crate::write::Output;
@@ -170,6 +170,16 @@ pub(super) fn run(arguments: &AccuracyArguments) -> Result<ExitCode> {
                 until,
                 &progress,
             )?;
+            if measured.steps.is_empty() {
+                drop(bar);
+                note(&format!(
+                    "nothing is measured: the time was up after {} of the reference, and an error is measured against {} \
+                     at least: give a longer --time-limit",
+                    count_of(measured.reference as usize, "sample"),
+                    samples::LEAST_REFERENCE,
+                ));
+                return Ok(ExitCode::FAILURE);
+            }
             is_cut = measured.is_cut;
             reference_samples = Some(measured.reference);
             steps = measured.steps;
@@ -280,10 +290,9 @@ fn fit_samples(
     let frame = left.mul_f64(SHARE * f64::from(SAMPLES) / in_all as f64);
     let mut compiling = Duration::ZERO;
     fit(scene, frame, |scene| {
-        let started = Instant::now();
-        let compile = render(scene, settings, device, QUIET)?.timings.compile;
+        let (took, compile) = probe(scene, settings, device, until)?;
         compiling = compiling.max(compile);
-        Ok(started.elapsed().saturating_sub(compile))
+        Ok(took)
     })?;
     scene.sampling.samples = samples;
     Ok(compiling)
@@ -292,9 +301,12 @@ fn fit_samples(
 fn steps_table(report: &Report) -> String {
     let [width, height] = report.samples_image.unwrap_or_default();
     let mut text = format!(
-        "{}, {width} × {height} pixels, against {} samples of another seed\n\n{:12} {:>8} {:>14} {:>10} {:>10} {:>10} {:>12}\n",
+        "{}, {width} × {height} pixels, against {} of another seed\n\n{:12} {:>8} {:>14} {:>10} {:>10} {:>10} {:>12}\n",
         report.device,
-        report.reference_samples.unwrap_or_default(),
+        count_of(
+            report.reference_samples.unwrap_or_default() as usize,
+            "sample"
+        ),
         "rung",
         "samples",
         "ms",

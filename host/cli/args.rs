@@ -155,7 +155,8 @@ pub(super) struct AccuracyArguments {
     #[arg(long, value_name = "WIDTHxHEIGHT")]
     pub(super) size: Option<Size>,
 
-    /// With --samples: take no longer than about this many seconds, by a smaller image and fewer samples
+    /// With --samples: take no longer than about this many seconds, by a smaller image and fewer samples; where they are too few to
+    /// judge by, nothing is measured, and the exit code is 1
     #[arg(long, value_name = "SECONDS", value_parser = positive, default_value = "60", conflicts_with_all = ["size", "scene"], requires = "samples")]
     pub(super) time_limit: f64,
 

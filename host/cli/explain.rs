@@ -17,10 +17,10 @@ use crate::device::Device;
 use crate::error::Result;
 use crate::kernel_module;
 use crate::plural::count_of;
+use crate::render::Settings;
 use crate::render::cost::{self, Cost};
-use crate::render::fit::fit;
+use crate::render::fit::{fit, probe};
 use crate::render::paths::EffectChoice;
-use crate::render::{QUIET, Settings, render};
 use crate::scene::Scene;
 use crate::shown::shown_path;
 use crate::write::Output;
@@ -129,10 +129,8 @@ fn report(
             let left = until.saturating_duration_since(Instant::now());
             let frame = left.mul_f64(SHARE / cost::frames(choices.len()) as f64);
             fit(&mut scene, frame, |scene| {
-                let started = Instant::now();
-                let compile = render(scene, settings, device, QUIET)?.timings.compile;
+                let (took, compile) = probe(scene, settings, device, until)?;
                 compiling = compiling.max(compile);
-                let took = started.elapsed().saturating_sub(compile);
                 tracing::debug!(
                     "a frame of {} × {} pixels and {} samples: {took:.1?} of {frame:.1?}",
                     scene.width,

@@ -1,14 +1,17 @@
 //! [`fit`]: how large an image may be, and of how many samples, to be measured in the time there is.
 
-use std::time::Duration;
+use std::ops::ControlFlow;
+use std::time::{Duration, Instant};
 
+use super::{Settings, render};
+use crate::device::Device;
 use crate::error::Result;
 use crate::scene::Scene;
 
-/// The shorter side of the smallest image, in pixels.
-const LEAST: f64 = 16.0;
-/// The shorter side of an image that has fewer samples instead of fewer pixels, in pixels.
-const FAIR: f64 = 64.0;
+/// The pixels of the smallest image. Where light paths are as long as they may be, even these few take a part of a second.
+const LEAST: f64 = 64.0;
+/// The pixels of an image that has fewer samples instead of fewer pixels.
+const FAIR: f64 = 8192.0;
 /// The fewest samples of an image that has several: one alone is no antialiasing.
 const FEWEST: u32 = 2;
 /// How many more samples of all pixels there are from one frame to the next, at most: small images tell little of
@@ -16,9 +19,11 @@ const FEWEST: u32 = 2;
 const MOST_GROWTH: f64 = 16.0;
 /// By how much they must become more for another frame to be worth its time.
 const LEAST_GROWTH: f64 = 1.2;
+/// The part of the time there is that one frame may take to be found too large.
+const SHARE: f64 = 0.5;
 
 /// Makes the image of `scene` smaller, and its samples fewer, where a frame would take longer than `limit`. `frame` renders
-/// one and says how long it took.
+/// one and says how long it took. It begins with few pixels, whatever the shape of the image.
 ///
 /// # Errors
 ///
@@ -31,33 +36,90 @@ pub fn fit(
     let (width, height, samples) = (scene.width, scene.height, scene.samples());
     let asked_for = scene.sampling.samples;
     let all = f64::from(width) * f64::from(height);
-    let shorter = f64::from(width.min(height));
-    // The pixels of an image whose shorter side is so long.
-    let pixels = |side: f64| all * (side / shorter).min(1.0).powi(2);
     let fewest = samples.min(FEWEST);
-    // Samples of all pixels.
-    let most = all * f64::from(samples);
-    let mut work = pixels(LEAST) * f64::from(fewest);
-    while work < most {
-        let taken = ((work / pixels(FAIR)) as u32).clamp(fewest, samples);
-        let share = (work / (f64::from(taken) * all)).sqrt().min(1.0);
-        let side = |whole: u32| (f64::from(whole) * share).round().max(1.0) as u32;
-        (scene.width, scene.height) = (side(width), side(height));
-        if taken < samples {
-            scene.sampling.samples = Some(taken);
+    // Work is counted in samples of all pixels.
+    let set = |scene: &mut Scene, work: f64| {
+        let taken = ((work / all.min(FAIR)) as u32).clamp(fewest, samples);
+        (scene.width, scene.height) = size((width, height), work / f64::from(taken));
+        scene.sampling.samples = if taken < samples {
+            Some(taken)
         } else {
-            scene.sampling.samples = asked_for;
-        }
+            asked_for
+        };
+    };
+    let most = all * f64::from(samples);
+    let mut work = all.min(LEAST) * f64::from(fewest);
+    // What was done in time, or is the least.
+    let mut fits = work;
+    while work < most {
+        set(scene, work);
         let took = frame(scene)?.as_secs_f64().max(1e-9);
         let growth = (limit.as_secs_f64() / took).min(MOST_GROWTH);
+        if growth < 1.0 {
+            set(scene, (work * growth).max(fits));
+            return Ok(());
+        }
         if growth < LEAST_GROWTH {
             return Ok(());
         }
+        fits = work;
         work *= growth;
     }
     (scene.width, scene.height) = (width, height);
     scene.sampling.samples = asked_for;
     Ok(())
+}
+
+/// The size of an image of about so many pixels: of the shape of one of `whole`, as far as no side is shorter than a pixel.
+fn size(whole: (u32, u32), pixels: f64) -> (u32, u32) {
+    let (width, height) = (f64::from(whole.0), f64::from(whole.1));
+    let share = (pixels / (width * height)).sqrt().min(1.0);
+    let shorter = width.min(height) * share;
+    // What the shorter side has too much, the longer has less.
+    let longer = if shorter < 1.0 {
+        pixels
+    } else {
+        width.max(height) * share
+    };
+    let side = |side: f64, whole: f64| side.round().clamp(1.0, whole) as u32;
+    let shorter = side(shorter, width.min(height));
+    let longer = side(longer, width.max(height));
+    if width > height {
+        (longer, shorter)
+    } else {
+        (shorter, longer)
+    }
+}
+
+/// Renders a frame of `scene` to see what it takes. It is broken off after a part of the time that is left until `until`, because
+/// that is to be enough for others after it. Returns how long the frame took, [`Duration::MAX`] if it was broken off, and how long
+/// compiling took, which does not count.
+///
+/// # Errors
+///
+/// As [`render`](super::render).
+pub(crate) fn probe(
+    scene: &Scene,
+    settings: Settings,
+    device: &Device,
+    until: Instant,
+) -> Result<(Duration, Duration)> {
+    let started = Instant::now();
+    let patience = until.saturating_duration_since(started).mul_f64(SHARE);
+    let rendered = render(scene, settings, device, &|_| {
+        if started.elapsed() < patience {
+            ControlFlow::Continue(())
+        } else {
+            ControlFlow::Break(())
+        }
+    })?;
+    let compiling = rendered.timings.compile;
+    let took = if rendered.is_complete() {
+        started.elapsed().saturating_sub(compiling)
+    } else {
+        Duration::MAX
+    };
+    Ok((took, compiling))
 }
 
 #[cfg(test)]
@@ -81,7 +143,7 @@ mod tests {
     #[test]
     fn images_are_as_large_as_the_time_allows() {
         // 518,400 pixels.
-        assert_eq!(fitted(100, 10), (960, 540, 1));
+        assert_eq!(fitted(100, 10), (960, 540, 2));
         assert_eq!(fitted(100, 190).0, 960);
         let (width, height, took) = fitted(100, 2500);
         assert!(
@@ -91,7 +153,7 @@ mod tests {
         assert!((f64::from(width) / f64::from(height) - 16.0 / 9.0).abs() < 0.02);
         assert!(took < 300, "{took} ms to find out");
         // What takes too long at any size is as small as may be.
-        assert_eq!(fitted(1, 1_000_000), (28, 16, 448));
+        assert_eq!(fitted(1, 1_000_000), (11, 6, 66));
     }
 
     /// Where the image would be too small to tell anything, it has fewer samples.
@@ -109,14 +171,64 @@ mod tests {
             .expect("frames");
             (scene.width, scene.height, scene.samples())
         };
-        assert_eq!(fitted(1), (28, 16, 2));
+        assert_eq!(fitted(1), (29, 17, 2));
         let (width, height, samples) = fitted(100);
         assert!((60..=72).contains(&height) && width > height);
         assert!((8..=14).contains(&samples), "{samples}");
-        // 7,168 pixels of 64 rows in 500 samples take 3.6 seconds; the image grows after that.
+        // 8,192 pixels in 500 samples take 4.1 seconds; the image grows after that.
         let (_, height, samples) = fitted(36_000);
         assert!((180..=220).contains(&height), "{height}");
         assert_eq!(samples, 500);
         assert_eq!(fitted(1_000_000), (960, 540, 500));
+    }
+
+    /// However wide and flat an image is, the first frame is a small one.
+    #[test]
+    fn flat_images_begin_small() {
+        for (width, height) in [(4096, 16), (16, 4096), (65_536, 1), (1, 65_536), (3, 2)] {
+            let frames = |nanoseconds_a_sample: u64| {
+                let mut scene = Scene::new(World::default());
+                (scene.width, scene.height) = (width, height);
+                scene.sampling.samples = Some(64);
+                let mut frames = Vec::new();
+                fit(&mut scene, Duration::from_millis(10), |scene| {
+                    let pixels = u64::from(scene.width) * u64::from(scene.height);
+                    assert!(scene.width <= width && scene.height <= height);
+                    let work = pixels * u64::from(scene.samples());
+                    frames.push(work);
+                    Ok(Duration::from_nanos(work * nanoseconds_a_sample))
+                })
+                .expect("frames");
+                (frames, (scene.width, scene.height, scene.samples()))
+            };
+            let (works, smallest) = frames(1_000_000);
+            assert_eq!(works.len(), 1);
+            assert!(works[0] <= 2 * 66, "{works:?} of {width} × {height}");
+            assert!(smallest.0 * smallest.1 <= 66);
+            assert!(width > height || smallest.0 <= smallest.1);
+            let (works, _) = frames(1000);
+            assert!(works.iter().all(|work| *work < 12_000), "{works:?}");
+            let (_, whole) = frames(1);
+            assert_eq!(whole, (width, height, 64));
+        }
+    }
+
+    /// A frame that takes longer than others of its size promised is not what is measured then.
+    #[test]
+    fn a_frame_that_is_broken_off_is_made_smaller_again() {
+        let mut scene = Scene::new(World::default());
+        (scene.width, scene.height) = (960, 540);
+        let mut frames = Vec::new();
+        fit(&mut scene, Duration::from_millis(100), |scene| {
+            frames.push((scene.width, scene.height));
+            Ok(if frames.len() < 3 {
+                Duration::from_millis(1)
+            } else {
+                Duration::MAX
+            })
+        })
+        .expect("frames");
+        assert_eq!(frames.len(), 3);
+        assert_eq!((scene.width, scene.height), frames[1]);
     }
 }
