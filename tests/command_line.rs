@@ -843,6 +843,106 @@ fn measuring_keeps_to_its_time() {
         .stderr(contains("--scene"));
 }
 
+/// In thick fog light paths are as long as they may be: a pixel takes milliseconds.
+fn heavy(folder: &Path, width: u32, height: u32) -> std::path::PathBuf {
+    let path = folder.join("heavy.toml");
+    let text = format!(
+        "[image]\nwidth = {width}\nheight = {height}\nsamples = 64\nmax_bounces = 10000\n\
+         [sky]\nhorizon = [1, 1, 1]\n[fog]\nextinction = 10\ncenter = [0, 0, 0]\nradius = 100\n\
+         [camera]\neye = [0, 0, 5]\ntarget = [0, 0, 0]\n[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\n"
+    );
+    std::fs::write(&path, text).expect("a scene");
+    path
+}
+
+/// The first image that is measured has few pixels, also where the shorter side has few already.
+#[test]
+fn measuring_keeps_to_its_time_in_flat_images() {
+    let dir = temporary();
+    for (width, height) in [(4096, 16), (65_536, 1)] {
+        let scene = heavy(dir.path(), width, height);
+        spherule()
+            .arg("explain")
+            .arg(&scene)
+            .args(["--device", "cpu", "--time-limit", "1"])
+            .timeout(Duration::from_secs(15))
+            .assert()
+            .success()
+            .stdout(contains("measured with"));
+        let started = Instant::now();
+        // Whether there is time for a reference depends on the machine.
+        let output = spherule()
+            .args(["accuracy", "--samples"])
+            .arg(&scene)
+            .args(["--device", "cpu", "--time-limit", "1"])
+            .timeout(Duration::from_secs(15))
+            .output()
+            .expect("it runs");
+        assert!(
+            matches!(output.status.code(), Some(0 | 1)),
+            "{output:?} after {:?}",
+            started.elapsed()
+        );
+    }
+}
+
+/// The limit holds for the preview, too, and what was traced is counted.
+#[test]
+fn a_time_limit_holds_however_long_a_pixel_takes() {
+    let dir = temporary();
+    let scene = heavy(dir.path(), 512, 512);
+    for limit in ["0.01", "1"] {
+        let started = Instant::now();
+        let output = spherule()
+            .arg("render")
+            .arg(&scene)
+            .args(["--device", "cpu", "--time-limit", limit, "--stats", "-"])
+            .arg("-o")
+            .arg(dir.path().join("out.png"))
+            .assert()
+            .success()
+            .stderr(contains("% of the pixels (the time was up"));
+        let took = started.elapsed().as_secs_f64();
+        let limit: f64 = limit.parse().expect("a number");
+        // Before, 4096 pixels were traced in any case.
+        assert!(took < limit + 2.5, "{took} s");
+        let stats: serde_json::Value =
+            serde_json::from_slice(&output.get_output().stdout).expect("JSON");
+        assert_eq!(stats["rays"], stats["traced_pixels"]);
+        assert!(limit < 1.0 || stats["rays"].as_u64() > Some(0), "{stats}");
+    }
+}
+
+/// An image without samples is cut by a time limit as well; that the other options do nothing is said before the work.
+#[test]
+fn a_time_limit_cuts_camera_rays() {
+    let dir = temporary();
+    let out = dir.path().join("out.png");
+    let render = |limit: &str| {
+        let mut command = spherule();
+        command
+            .args(["render", "scenes/c60.xyz", "--device", "cpu"])
+            .args(["--size", "4096x4096", "--time-limit", limit])
+            .args(["--seed", "1", "--stats", "-", "-o"])
+            .arg(&out);
+        command.assert()
+    };
+    render("1e-9")
+        .code(1)
+        .stdout("")
+        .stderr(contains("nothing in this image is sampled").and(contains("nothing is written")));
+    assert!(!out.exists());
+    let output = render("0.005").success().stderr(contains(
+        "% of the pixels (the time was up: the others are transparent)",
+    ));
+    let stats: serde_json::Value =
+        serde_json::from_slice(&output.get_output().stdout).expect("JSON");
+    let rays = stats["rays"].as_u64().expect("a count");
+    assert!(rays > 0 && rays < 4096 * 4096, "{stats}");
+    assert_eq!(stats["traced_pixels"], rays);
+    assert!(image::open(&out).expect("a PNG").color().has_alpha());
+}
+
 /// A name that is wrong, or more than the machine has room for, is known before anything is measured.
 #[test]
 fn bench_looks_at_everything_before_it_measures() {
@@ -939,7 +1039,7 @@ fn sampling_is_asked_for_and_reported() {
         .assert()
         .code(2)
         .stderr(contains("cannot be used with"));
-    render("scenes/c60.xyz", &["--time-limit", "1"])
+    render("scenes/c60.xyz", &["--seed", "4"])
         .assert()
         .success()
         .stderr(contains("nothing in this image is sampled"));

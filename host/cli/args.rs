@@ -91,7 +91,8 @@ pub(super) struct RenderArguments {
     #[arg(long, value_name = "auto|all|none|LIST", default_value = "auto", value_parser = effects)]
     pub(super) effects: EffectChoice,
 
-    /// Take no more samples after this many seconds of tracing, also in the middle of one: pixels that have none by then show a coarse preview
+    /// Trace no longer than this many seconds, also in the middle of a sample: pixels that have none by then show a coarse preview, or
+    /// nothing in an image of one ray a pixel
     #[arg(long, value_name = "SECONDS", value_parser = positive)]
     pub(super) time_limit: Option<f64>,
 

@@ -6,6 +6,7 @@ use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
 use serde::Serialize;
+use spherule_kernel::Shading;
 
 use super::args::RenderArguments;
 use super::interrupt::{self, Graceful};
@@ -33,6 +34,7 @@ struct Stats {
     spheres: usize,
     width: u32,
     height: u32,
+    /// Camera rays that were traced, one for each sample of each pixel.
     rays: u64,
     /// Pixels that a ray was traced for: all, unless the render was stopped early.
     traced_pixels: u64,
@@ -147,7 +149,14 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<ExitCode> {
         noise: arguments.noise,
     };
 
-    // An image that a signal cuts has opacities.
+    let asks_for_samples =
+        arguments.samples.is_some() || arguments.seed.is_some() || arguments.noise.is_some();
+    let shown = settings.effects.shown(scene.effects());
+    if asks_for_samples && (settings.shading != Shading::Lit || shown.is_empty()) {
+        say("nothing in this image is sampled: --samples, --seed and --noise have no effect");
+    }
+
+    // An image that a signal or a time limit cuts has opacities.
     let room = Room::reserve(Format::of(output.path())?, scene.width, scene.height, true)?;
     // From here on the first signal ends the tracing, and the picture is kept.
     let graceful = Graceful::new();
@@ -175,6 +184,13 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<ExitCode> {
         note("interrupted before the first pixel was done: nothing is written");
         return Ok(code);
     }
+    // Where there are samples there is a preview.
+    if rendered.traced == 0 && rendered.reached.is_none() {
+        note(
+            "the time was up before the first pixel was done: nothing is written; give a longer --time-limit",
+        );
+        return Ok(ExitCode::FAILURE);
+    }
     let image = &rendered.image;
     let encoding = Instant::now();
     // What is rendered is written before a signal ends the command.
@@ -190,15 +206,6 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<ExitCode> {
         say(&format!(
             "depth from {near} (white) to {far} (black) scene units"
         ));
-    }
-    let asks_for_samples = arguments.samples.is_some()
-        || arguments.seed.is_some()
-        || arguments.time_limit.is_some()
-        || arguments.noise.is_some();
-    if asks_for_samples && rendered.reached.is_none() {
-        say(
-            "nothing in this image is sampled: --samples, --seed, --time-limit and --noise have no effect",
-        );
     }
     let extent = extent(&rendered);
     let is_interrupted = interrupt::requested().is_some() && !rendered.is_complete();
@@ -227,9 +234,7 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<ExitCode> {
         .flatten();
     let passed = check.as_ref().is_none_or(|check| check.passed);
     if let Some(output) = stats {
-        // Camera rays; light paths go on from there.
-        let samples = rendered.reached.map_or(1, |reached| reached.samples);
-        let rays = u64::from(scene.width) * u64::from(scene.height) * u64::from(samples);
+        let rays = rendered.rays;
         let trace = rendered.timings.trace.as_secs_f64();
         write_json(
             &output,
@@ -310,6 +315,9 @@ fn extent(rendered: &Rendered) -> String {
         let rest = match rendered.reached {
             Some(reached) if reached.stopped_by == StoppedBy::TimeLimit => {
                 " (the time was up: the others show a coarse preview)"
+            }
+            None if interrupt::requested().is_none() => {
+                " (the time was up: the others are transparent)"
             }
             _ => "",
         };

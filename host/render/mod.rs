@@ -49,8 +49,7 @@ pub struct Settings {
     pub acceleration: Acceleration,
     /// Which effects the pipeline holds; only [`Shading::Lit`] shows any.
     pub effects: EffectChoice,
-    /// Stops taking samples after this time of tracing, give or take a launch on a GPU. An image of one ray a pixel, which
-    /// takes no samples, is not stopped.
+    /// Stops after this time of tracing, give or take a launch on a GPU.
     pub time_limit: Option<Duration>,
     /// Stops taking samples when [`Reached::noise`](paths::Reached::noise) is as low as this.
     pub noise: Option<f64>,
@@ -94,10 +93,13 @@ pub const QUIET: Progress<'static> = &|_| ControlFlow::Continue(());
 #[derive(Debug)]
 pub struct Rendered {
     /// The image. Pixels that no ray was traced for are transparent, and black where nothing shows that;
-    /// where a time limit left them out, they show a coarse preview instead.
+    /// where a time limit left them out of an image of samples, they show a coarse preview instead.
     pub image: Image,
     /// How many pixels a ray was traced for: all, unless the render was stopped early.
     pub traced: u64,
+    /// How many camera rays were traced for the image: one for each sample of each pixel, and none for a preview. Light paths go
+    /// on from there.
+    pub rays: u64,
     /// What it took.
     pub timings: Timings,
     /// How far it came, where there is more than one ray a pixel.
@@ -166,12 +168,14 @@ pub fn render(
     }
     let launch = whole_image(scene)?;
     memory_for(scene, size_of::<Pixel>() as u64)?;
+    let is_late = AtomicBool::new(false);
     let (mut pixels, timings) = match device {
         Device::Cpu => {
             let started = Instant::now();
             let world = cpu::Prepared::new(&scene.world, settings.acceleration);
             let setup = started.elapsed();
-            let pixels = cpu::render(&launch, &world, settings, progress)?;
+            let progress = within(settings.time_limit, &is_late, progress);
+            let pixels = cpu::render(&launch, &world, settings, &progress)?;
             let timings = Timings {
                 setup,
                 trace: started.elapsed() - setup,
@@ -183,7 +187,8 @@ pub fn render(
             let started = Instant::now();
             let world = gpu::Prepared::new(gpu, &scene.world, settings)?;
             let setup = started.elapsed();
-            let (pixels, timings) = gpu::render(gpu, &launch, &world, progress)?;
+            let progress = within(settings.time_limit, &is_late, progress);
+            let (pixels, timings) = gpu::render(gpu, &launch, &world, &progress)?;
             let timings = Timings {
                 setup: setup + timings.setup,
                 ..timings
@@ -193,7 +198,7 @@ pub fn render(
     };
     let mut missing = Vec::new();
     let mut traced = pixels.len() as u64;
-    if is_over.into_inner() {
+    if is_over.into_inner() || is_late.into_inner() {
         traced = pixels.iter().filter(|pixel| pixel.is_written()).count() as u64;
         missing = blank_the_rest(&mut pixels);
     }
@@ -205,9 +210,26 @@ pub fn render(
     Ok(Rendered {
         image,
         traced,
+        rays: traced,
         timings,
         reached: None,
     })
+}
+
+/// Breaks off as `progress` does, and when the time, which begins now, is up. `is_late` learns that.
+fn within<'a>(
+    limit: Option<Duration>,
+    is_late: &'a AtomicBool,
+    progress: Progress<'a>,
+) -> impl Fn(f64) -> ControlFlow<()> + Sync + 'a {
+    let started = Instant::now();
+    move |done| {
+        if limit.is_some_and(|limit| started.elapsed() >= limit) {
+            is_late.store(true, Ordering::Relaxed);
+            return ControlFlow::Break(());
+        }
+        progress(done)
+    }
 }
 
 /// Whether there is memory for the image of `scene`, of which each pixel takes so many bytes on the host, and for the tree: what is

@@ -106,6 +106,10 @@ pub fn render(
         Device::Gpu(gpu) => gpu::render(gpu, &prepared, settings, progress)?,
     };
     timings.setup += setup;
+    let rays = accumulators
+        .par_iter()
+        .map(|sum| sum.samples() as u64)
+        .sum();
     let mut traced = pixels;
     if reached.samples == 0 {
         let is_traced = |sum: &&Accumulator| sum.samples() > 0.0;
@@ -140,6 +144,7 @@ pub fn render(
     Ok(Rendered {
         image,
         traced,
+        rays,
         timings,
         reached: Some(reached),
     })
