@@ -291,7 +291,7 @@ fn more_than(available: Option<u64>) -> String {
 }
 
 /// So many bytes, for a person and exactly.
-fn bytes(count: u64) -> String {
+pub(crate) fn bytes(count: u64) -> String {
     let mut value = count as f64;
     let mut unit = "";
     for larger in ["KiB", "MiB", "GiB", "TiB", "PiB", "EiB"] {

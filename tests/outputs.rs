@@ -8,6 +8,7 @@ use std::process::{Child, Stdio};
 use std::time::{Duration, Instant};
 
 use assert_cmd::Command;
+use assert_cmd::assert::OutputAssertExt;
 use assert_cmd::cargo::cargo_bin;
 use predicates::prelude::*;
 use predicates::str::contains;
@@ -357,7 +358,7 @@ fn a_full_disk_is_said_and_loses_nothing() {
             .assert()
             .success()
             .stdout("1\nout.exr\nout.png\ns.json\nold\n")
-            .stderr(contains("No space left on device").and(contains("MiB or less")));
+            .stderr(contains("No space left on device").and(contains(" bytes) or less")));
     }
     // No room for a byte.
     let script = format!(
@@ -523,4 +524,348 @@ fn the_next_run_removes_what_a_killed_one_left() {
         .success();
     assert!(live.wait().expect("it ends").success());
     assert_eq!(names(path), ["live.exr", "out.png", "scene.toml"]);
+}
+
+/// The command's name for a shell.
+fn quoted() -> String {
+    format!("'{}'", cargo_bin("spherule").display())
+}
+
+/// What a shell makes of `script` in `directory`.
+fn shell(directory: &Path, script: &str) -> assert_cmd::assert::Assert {
+    Command::new("bash")
+        .env_remove("SPHERULE_LOG")
+        .current_dir(directory)
+        .args(["-c", script])
+        .timeout(Duration::from_secs(120))
+        .assert()
+}
+
+fn make_fifo(path: &Path) {
+    let made = std::process::Command::new("mkfifo").arg(path).status();
+    assert!(made.expect("mkfifo").success());
+}
+
+/// A light scene, so that samples are taken.
+const LIGHT: &str = "[image]\nwidth = 16\nheight = 16\nsamples = 4\n[sky]\nhorizon = [1, 1, 1]\n";
+
+#[test]
+fn a_name_that_is_too_long_is_refused_before_the_work() {
+    let directory = with_scene();
+    let path = directory.path();
+    let long = "a".repeat(300);
+    for arguments in [
+        vec![format!("{long}.png")],
+        vec!["out.png".into(), "--stats".into(), format!("{long}.json")],
+        vec![format!("{long}/out.png")],
+    ] {
+        spherule(path)
+            .args(RENDER)
+            .args(arguments)
+            .assert()
+            .code(1)
+            .stderr(
+                contains("File name too long")
+                    .and(contains("shorter"))
+                    .and(contains("rendering on").not()),
+            );
+    }
+    assert_eq!(names(path), ["scene.toml"]);
+}
+
+/// What is mounted by itself cannot be replaced, nor can another's file in a sticky directory.
+#[test]
+fn a_file_that_cannot_be_replaced_is_written_in_place() {
+    let directory = with_scene();
+    let path = directory.path();
+    fs::set_permissions(path, fs::Permissions::from_mode(0o755)).expect("permissions");
+    let spherule = quoted();
+    fs::write(
+        path.join("from.png"),
+        "old, and longer than the picture is ".repeat(999),
+    )
+    .expect("a file");
+    fs::write(path.join("to.png"), "").expect("a file");
+    let mounted = Command::new("unshare")
+        .current_dir(path)
+        .args(["-m", "sh", "-c", "mount --bind from.png to.png"])
+        .ok();
+    if mounted.is_err() {
+        eprintln!("skipped a_file_that_cannot_be_replaced_is_written_in_place: no right to mount");
+        return;
+    }
+    let script = format!(
+        "unshare -m sh -c \"mount --bind from.png to.png && {spherule} render scene.toml --device cpu -o to.png\""
+    );
+    shell(path, &script).success();
+    image::open(path.join("from.png")).expect("an image");
+    assert_eq!(names(path), ["from.png", "scene.toml", "to.png"]);
+
+    let sticky = path.join("sticky");
+    fs::create_dir(&sticky).expect("a folder");
+    fs::write(sticky.join("out.png"), "old").expect("a file");
+    fs::set_permissions(sticky.join("out.png"), fs::Permissions::from_mode(0o666)).expect("rights");
+    fs::set_permissions(&sticky, fs::Permissions::from_mode(0o1777)).expect("permissions");
+    let script = format!(
+        "test -x {spherule} && exec setpriv --reuid 65534 --regid 65534 --clear-groups {spherule} \
+         render scene.toml --device cpu -o sticky/out.png"
+    );
+    let runs = shell(
+        path,
+        &format!("setpriv --reuid 65534 --regid 65534 --clear-groups {spherule} --version"),
+    );
+    if runs.try_success().is_err() {
+        eprintln!("skipped the sticky directory: nobody else may run the command");
+        return;
+    }
+    shell(path, &script).success();
+    image::open(sticky.join("out.png")).expect("an image");
+    assert_eq!(names(&sticky), ["out.png"]);
+}
+
+#[test]
+fn an_append_only_directory_is_refused_before_the_work() {
+    let directory = with_scene();
+    let path = directory.path();
+    let closed = path.join("closed");
+    fs::create_dir(&closed).expect("a folder");
+    let flag = |flag: &str| {
+        let set = std::process::Command::new("chattr")
+            .arg(flag)
+            .arg(&closed)
+            .output();
+        set.is_ok_and(|set| set.status.success())
+    };
+    if !flag("+a") {
+        eprintln!(
+            "skipped an_append_only_directory_is_refused_before_the_work: no right to make one"
+        );
+        return;
+    }
+    let output = spherule(path).args(RENDER).arg("closed/out.png").output();
+    let names = names(&closed);
+    assert!(flag("-a"));
+    output
+        .expect("it runs")
+        .assert()
+        .code(1)
+        .stderr(contains("append").and(contains("rendering on").not()));
+    assert!(names.is_empty(), "{names:?}");
+}
+
+/// Nothing that was computed is lost where it does not get its name.
+#[test]
+fn what_does_not_get_its_name_is_kept_under_another() {
+    let directory = with_scene();
+    let path = directory.path();
+    let child = writing(path, "out.exr");
+    fs::create_dir(path.join("out.exr")).expect("a folder");
+    let output = child.wait_with_output().expect("it ends");
+    assert_eq!(output.status.code(), Some(1));
+    let kept: Vec<String> = names(path)
+        .into_iter()
+        .filter(|name| name.starts_with("spherule-"))
+        .collect();
+    assert_eq!(kept.len(), 1, "{:?}", names(path));
+    image::open(path.join(&kept[0])).expect("an image");
+    // The next run does not take it for what a killed one left.
+    spherule(path)
+        .args(RENDER)
+        .arg("next.png")
+        .assert()
+        .success();
+    assert!(path.join(&kept[0]).exists());
+}
+
+/// What a stream needs is there before the work, and an error names what is missing.
+#[test]
+fn streams_are_checked_before_the_work() {
+    let directory = with_scene();
+    let path = directory.path();
+    let spherule = quoted();
+    make_fifo(&path.join("fifo.png"));
+    let render = format!("{spherule} render scene.toml --device cpu");
+    let before = || contains("help: ").and(contains("rendering on").not());
+    shell(path, &format!("timeout 20 cat fifo.png > got & TMPDIR=/nonexistent {render} -o fifo.png; code=$?; kill %1; exit $code"))
+        .code(1)
+        .stderr(before().and(contains("/nonexistent")).and(contains("TMPDIR")));
+    drop(std::os::unix::net::UnixListener::bind(path.join("socket.png")).expect("a socket"));
+    shell(path, &format!("{render} -o socket.png"))
+        .code(1)
+        .stderr(
+            before()
+                .and(contains("Connection refused"))
+                .and(contains("socket.png")),
+        );
+    shell(path, &format!("{render} -o out.png --stats socket.png"))
+        .code(1)
+        .stderr(before().and(contains("Connection refused")));
+    // Standard output that is open for reading only takes nothing.
+    fs::write(path.join("read"), "").expect("a file");
+    shell(path, &format!("{render} -o out.png --stats - 1<read"))
+        .code(1)
+        .stderr(before());
+    // What is read while it is made is whole, and its reader is not left waiting by a failure.
+    shell(
+        path,
+        &format!("cat fifo.png > got & {render} -o fifo.png && wait"),
+    )
+    .success();
+    let got = fs::read(path.join("got")).expect("a file");
+    image::load_from_memory(&got).expect("an image");
+}
+
+#[test]
+fn a_socket_is_written_into() {
+    let directory = with_scene();
+    let path = directory.path();
+    let listener = std::os::unix::net::UnixListener::bind(path.join("out.png")).expect("a socket");
+    let reader = std::thread::spawn(move || {
+        let (mut stream, _) = listener.accept().expect("a connection");
+        let mut read = Vec::new();
+        std::io::Read::read_to_end(&mut stream, &mut read).expect("a picture");
+        read
+    });
+    spherule(path)
+        .args(RENDER)
+        .arg("out.png")
+        .assert()
+        .success();
+    image::load_from_memory(&reader.join().expect("a reader")).expect("an image");
+}
+
+/// Standard output is a file as any other, whatever it is called.
+#[test]
+fn standard_output_is_shared_with_nothing() {
+    let directory = with_scene();
+    let path = directory.path();
+    let spherule = quoted();
+    fs::write(path.join("light.toml"), format!("{LIGHT}{SPHERE}")).expect("a scene");
+    fs::copy(path.join("light.toml"), path.join("input.toml")).expect("a copy");
+    symlink("/dev/stdout", path.join("so.png")).expect("a link");
+    let render = format!("{spherule} render input.toml --device cpu");
+    let accuracy = format!("{spherule} accuracy --device cpu --rays 1000");
+    let content = fs::read(path.join("input.toml")).expect("a file");
+    for (script, message) in [
+        (
+            format!("{render} -o so.png --stats - > both"),
+            "standard output",
+        ),
+        (
+            format!("{render} -o so.png --stats - | cat > both"),
+            "standard output",
+        ),
+        (
+            format!("{render} -o so.png --stats /dev/fd/1 > both"),
+            "standard output",
+        ),
+        (
+            format!("{accuracy} --scene generic -o /dev/stdout --json - > both"),
+            "standard output",
+        ),
+        (
+            format!("{render} -o a.png -q --stats - > a.png"),
+            "standard output",
+        ),
+        (
+            format!("{render} -o a.png -q --stats - >> input.toml"),
+            "the input input.toml",
+        ),
+        (
+            format!("{accuracy} --scene input.toml 1<> input.toml"),
+            "the input input.toml",
+        ),
+        (
+            format!("{accuracy} --scene generic --json n.json > n.json"),
+            "standard output",
+        ),
+        (
+            format!("{accuracy} --scene generic -o n.html > n.html"),
+            "standard output",
+        ),
+        (
+            format!("{spherule} explain --no-costs --device cpu input.toml 1<> input.toml"),
+            "the input input.toml",
+        ),
+        (
+            format!("{spherule} explain --no-costs --device cpu --json input.toml >> input.toml"),
+            "the input input.toml",
+        ),
+    ] {
+        eprintln!("{script}");
+        let script = format!("set -o pipefail; {script}");
+        shell(path, &script)
+            .code(2)
+            .stderr(contains(message).and(contains("help: ")));
+        assert!(
+            fs::read(path.join("input.toml")).expect("a file") == content,
+            "{script}"
+        );
+        for name in ["both", "a.png", "n.json", "n.html"] {
+            let written = fs::read(path.join(name)).unwrap_or_default();
+            assert!(written.is_empty(), "{script}");
+        }
+    }
+    // By another name it is the same.
+    for name in ["-", "/dev/stdout", "/dev/fd/1"] {
+        for command in [format!("{accuracy} --scene far --json {name}")] {
+            for to in ["| cat", "> both; cat both"] {
+                let assert = shell(path, &format!("{command} {to}")).success();
+                let read = serde_json::from_slice::<serde_json::Value>(&assert.get_output().stdout);
+                assert!(read.is_ok(), "{command} {to}");
+            }
+        }
+    }
+    // What takes anything may be shared, and what is another file is none of this.
+    shell(path, &format!("{render} -o a.png --stats - > /dev/null")).success();
+    shell(
+        path,
+        &format!("{render} -o a.png --stats /dev/null > /dev/null"),
+    )
+    .success();
+    shell(
+        path,
+        &format!(
+            "{render} -o a.png --stats - > stats && {render} -o a.png --stats - | cat > stats"
+        ),
+    )
+    .success();
+}
+
+#[test]
+fn room_that_is_missing_is_said_in_units_that_fit() {
+    let directory = with_scene();
+    let path = directory.path();
+    spherule(path)
+        .args(RENDER)
+        .args(["fine.png", "--stats", "/dev/full"])
+        .assert()
+        .code(1)
+        .stderr(contains(" bytes or less").and(contains("0.0").not()));
+    let script = format!(
+        "mkdir room; unshare -m sh -c \"mount -t tmpfs -o nr_inodes=1 tmpfs room && \
+         {} render scene.toml --device cpu -o room/out.png\"",
+        quoted()
+    );
+    if Command::new("unshare").args(["-m", "true"]).ok().is_err() {
+        eprintln!("skipped the inodes: no right to mount");
+        return;
+    }
+    shell(path, &script)
+        .code(1)
+        .stderr(contains("No space left on device").and(contains("df -i")));
+}
+
+#[test]
+fn help_that_cannot_be_printed_is_an_error() {
+    let directory = temporary();
+    let spherule = quoted();
+    for asked in ["--help", "--version", "render --help"] {
+        shell(directory.path(), &format!("{spherule} {asked} > /dev/full"))
+            .code(1)
+            .stderr(contains("standard output").and(contains("No space left on device")));
+        shell(directory.path(), &format!("{spherule} {asked} | true"))
+            .success()
+            .stderr("");
+    }
 }

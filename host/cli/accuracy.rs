@@ -10,7 +10,7 @@ use spherule_kernel::{Ray, Rung, Sphere};
 
 use super::args::{AccuracyArguments, Subject};
 use super::progress::Bar;
-use super::{load, note, print, write_json};
+use super::{load, note, write_json};
 use crate::accuracy::canary::Canary;
 use crate::accuracy::families::Family;
 use crate::accuracy::frames::{self, Frame};
@@ -91,7 +91,10 @@ pub(super) fn run(arguments: &AccuracyArguments) -> Result<ExitCode> {
     // What is wrong with the input is said before any device is opened.
     let html = arguments.output.as_deref().map(Output::new).transpose()?;
     let json = arguments.json.as_deref().map(Output::new).transpose()?;
-    let outputs: Vec<&Output> = html.iter().chain(&json).collect();
+    // What a program reads stands alone.
+    let to_stdout = html.iter().chain(&json).any(Output::is_stdout);
+    let stdout = (!to_stdout).then(Output::stdout).transpose()?;
+    let outputs: Vec<&Output> = html.iter().chain(&json).chain(&stdout).collect();
     refuse_clashes(&outputs)?;
     let mut scene = match (&arguments.samples, &arguments.scene) {
         (Some(path), _) | (None, Some(Subject::Scene(path))) => {
@@ -235,9 +238,8 @@ pub(super) fn run(arguments: &AccuracyArguments) -> Result<ExitCode> {
     if let Some(output) = &json {
         write_json(output, &report)?;
     }
-    // What a program reads stands alone.
-    if !outputs.iter().any(|output| output.is_stdout()) {
-        print(&table(&report))?;
+    if let Some(output) = &stdout {
+        output.write(table(&report).as_bytes())?;
     }
     Ok(ExitCode::SUCCESS)
 }

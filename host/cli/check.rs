@@ -7,7 +7,7 @@ use serde::Serialize;
 use spherule_kernel::Rung;
 
 use super::args::CheckArguments;
-use super::{print, write_json};
+use super::write_json;
 use crate::accuracy::canary::{Canary, Share};
 use crate::accuracy::cases::{Verdict, catalogue};
 use crate::accuracy::scene_cases::SCENE_CASES;
@@ -35,12 +35,13 @@ struct CaseReport {
 }
 
 pub(super) fn run(arguments: &CheckArguments) -> Result<ExitCode> {
+    let stdout = Output::stdout()?;
     let (device, why) = Device::open(&arguments.device)?;
     let report = report(&device, why)?;
     if arguments.json {
-        write_json(&Output::new("-".as_ref())?, &report)?;
+        write_json(&stdout, &report)?;
     } else {
-        print(&table(&report))?;
+        stdout.write(table(&report).as_bytes())?;
     }
     Ok(if report.promises_kept {
         ExitCode::SUCCESS

@@ -11,7 +11,7 @@ use spherule_kernel::Effects;
 use super::args::ExplainArguments;
 use super::precision::choose_rung;
 use super::progress::Bar;
-use super::{load, note, print, write_json};
+use super::{load, note, write_json};
 use crate::accuracy::choose::DEFAULT_TOLERANCE;
 use crate::device::Device;
 use crate::error::Result;
@@ -24,6 +24,7 @@ use crate::render::paths::EffectChoice;
 use crate::scene::Scene;
 use crate::shown::shown_path;
 use crate::write::Output;
+use crate::write::same::refuse_inputs;
 
 #[derive(Debug, Serialize)]
 struct Report {
@@ -79,7 +80,10 @@ pub(super) fn run(arguments: &ExplainArguments) -> Result<ExitCode> {
         None => Some(Instant::now() + Duration::from_secs_f64(arguments.time_limit)),
         Some(_) => None,
     };
+    let stdout = Output::stdout()?;
+    refuse_inputs(&[&stdout], std::slice::from_ref(&arguments.input))?;
     let mut scene = load(&arguments.input)?;
+    refuse_inputs(&[&stdout], &scene.sources)?;
     if let Some(size) = arguments.size {
         (scene.width, scene.height) = (size.width, size.height);
     }
@@ -87,9 +91,9 @@ pub(super) fn run(arguments: &ExplainArguments) -> Result<ExitCode> {
     let (device, why) = Device::open(&arguments.device)?;
     let report = report(arguments, scene, &device, &why, until)?;
     if arguments.json {
-        write_json(&Output::new("-".as_ref())?, &report)?;
+        write_json(&stdout, &report)?;
     } else {
-        print(&table(&report))?;
+        stdout.write(table(&report).as_bytes())?;
     }
     Ok(ExitCode::SUCCESS)
 }

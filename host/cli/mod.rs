@@ -34,7 +34,7 @@ use crate::plural::count_of;
 use crate::scene::Scene;
 use crate::shown::{shown, shown_lines, shown_path};
 use crate::threads::{self, Fewer};
-use crate::write::Output;
+use crate::write::{Output, Waiting};
 pub use last_resort::{Allocator, spare_addresses};
 
 /// Runs the command line of this process; its exit code is for `main` to return.
@@ -62,10 +62,7 @@ pub fn run(arguments: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> 
     let words: Vec<OsString> = arguments.into_iter().map(Into::into).collect();
     let arguments = match Arguments::try_parse_from(&words) {
         Ok(arguments) => arguments,
-        Err(error) => {
-            print_refusal(&error, &words);
-            return u8::try_from(error.exit_code()).map_or(ExitCode::FAILURE, ExitCode::from);
-        }
+        Err(error) => return without_arguments(&error, &words),
     };
     let done = start_threads().and_then(|()| match arguments.command {
         Command::Render(arguments) => render::run(&arguments),
@@ -85,8 +82,23 @@ pub fn run(arguments: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> 
     }
 }
 
-/// Prints what is wrong with these words, of which a terminal is to obey none, or the help that was asked for, which is no error and
-/// goes to stdout.
+/// Prints what clap has to say: of arguments that are wrong, or a help that was asked for, which is no error and goes
+/// to stdout.
+fn without_arguments(error: &clap::Error, words: &[OsString]) -> ExitCode {
+    if error.use_stderr() {
+        print_refusal(error, words);
+    } else {
+        let _waiting = Waiting::begin();
+        let printed = error.print().and_then(|()| std::io::stdout().flush());
+        if let Err(error) = crate::write::output::printed(printed) {
+            report::print(&error);
+            return ExitCode::FAILURE;
+        }
+    }
+    u8::try_from(error.exit_code()).map_or(ExitCode::FAILURE, ExitCode::from)
+}
+
+/// Prints what is wrong with these words, of which a terminal is to obey none.
 fn print_refusal(error: &clap::Error, words: &[OsString]) {
     let shown: Vec<OsString> = words
         .iter()
@@ -152,7 +164,7 @@ fn start_threads() -> Result<()> {
 
 /// Prints to stdout.
 fn print(text: &str) -> Result<()> {
-    Output::new("-".as_ref())?.write(text.as_bytes())
+    Output::stdout()?.write(text.as_bytes())
 }
 
 /// Writes `value` for programs to read.
@@ -167,6 +179,7 @@ fn write_json(output: &Output, value: &impl Serialize) -> Result<()> {
 
 /// Prints to stderr, if anybody listens.
 fn note(text: &str) {
+    let _waiting = Waiting::begin();
     let _ = writeln!(std::io::stderr(), "{text}");
 }
 

@@ -7,7 +7,9 @@
 //! | [`image`] | [`Image::save`](crate::Image::save): kinds of image files, and the memory that writing one takes |
 //! | `png`, `exr` | their encoders, which hold a few rows at once |
 //! | `sink` | what encoders write into |
+//! | `stream` | what is written into as it is |
 //! | `temporary` | files under a temporary name |
+//! | `waiting` | what waits for somebody else |
 
 mod exr;
 pub mod image;
@@ -15,13 +17,16 @@ pub mod output;
 mod png;
 pub mod same;
 mod sink;
+mod stream;
 mod temporary;
+mod waiting;
 
 use std::path::Path;
 
 pub use image::{Format, Room};
 pub use output::Output;
 pub(crate) use temporary::remove_all as remove_unfinished;
+pub(crate) use waiting::Waiting;
 
 /// The directory that a file of this name is in.
 fn directory_of(path: &Path) -> &Path {

@@ -2,15 +2,17 @@
 
 use std::cell::OnceCell;
 use std::fs::{self, File, Metadata, OpenOptions};
-use std::io::{self, Seek, Write};
+use std::io::{self, Read, Seek, Write};
 use std::path::{Path, PathBuf};
 
 use super::directory_of;
 use super::image::{self, Format};
 use super::same::Identity;
 use super::sink::{Sink, Trouble};
-use super::temporary::{Temporary, remove_dead};
-use crate::error::{Error, Result};
+use super::stream::{Stream, of_this_process};
+use super::temporary::{Temporary, Unnamed, remove_dead};
+use super::waiting;
+use crate::error::{Error, Result, bytes};
 use crate::memory;
 use crate::shown::shown_path;
 
@@ -21,21 +23,27 @@ use crate::shown::shown_path;
 /// | nothing, or a file | The file appears whole or not at all: it is written beside its place under a temporary name, and renamed when it is on the disk. |
 /// | a file | What replaces it has its permissions, and its owner and group where this process may give them. Another hard link of it keeps the old content. |
 /// | a file that may not be written | It is refused, though a rename would replace it: somebody protected it. |
+/// | a file that cannot be replaced | It is written in place, once all is there: it is mounted by itself (`mount --bind`, a container's volume), or it is another user's in a sticky directory. |
 /// | a symlink | It stays; the file that it leads to is made or replaced. |
-/// | a pipe, a device, a socket | It is written into as it is, once all is there. |
+/// | a pipe, a device, a socket | It is opened before the work, and written into as it is, once all is there. A pipe that nobody reads by then is opened when it is written. |
 /// | `-` | Standard output, except for images. |
+///
+/// Where all is there and does not get its name after all, it is kept beside its place, and the error says under which
+/// name.
 #[derive(Debug)]
 pub struct Output {
     /// As the user called it.
     path: PathBuf,
     place: Place,
+    /// Where an image waits until it can go into a stream, which is written from its start to its end.
+    spool: Option<File>,
 }
 
 #[derive(Debug)]
 enum Place {
     Stdout,
     /// What is written into as it is.
-    Stream,
+    Stream(Stream),
     /// A file with this name, which is not a symlink's.
     File(PathBuf),
 }
@@ -45,23 +53,36 @@ impl Output {
     ///
     /// # Errors
     ///
-    /// [`Error::Output`] if the path is a directory or a file that may not be written, or if no file can be made in
-    /// its directory.
+    /// [`Error::Output`] if the path is a directory or a file that may not be written, if no file can be made in its
+    /// directory, or if it is something else that cannot be opened.
     pub fn new(path: &Path) -> Result<Self> {
         if path == Path::new("-") {
-            return Ok(Self {
-                path: path.into(),
-                place: Place::Stdout,
-            });
+            return Self::stdout();
         }
         let output = Self {
             path: path.into(),
             place: place_of(path)?,
+            spool: None,
         };
         if let Place::File(target) = &output.place {
             output.check(target)?;
         }
         Ok(output)
+    }
+
+    /// Standard output.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Output`] if it takes nothing.
+    pub fn stdout() -> Result<Self> {
+        #[cfg(unix)]
+        super::stream::stdout().map_err(|error| stdout_failed(&error))?;
+        Ok(Self {
+            path: "-".into(),
+            place: Place::Stdout,
+            spool: None,
+        })
     }
 
     /// An image.
@@ -71,7 +92,12 @@ impl Output {
     /// As [`Output::new`], and [`Error::OutputRefused`] if the extension names no kind of image.
     pub fn image(path: &Path) -> Result<Self> {
         Format::of(path)?;
-        Self::new(path)
+        let mut output = Self::new(path)?;
+        if let Place::Stream(_) = output.place {
+            let spool = tempfile::tempfile();
+            output.spool = Some(spool.map_err(|error| output.spool_failed(&error, None))?);
+        }
+        Ok(output)
     }
 
     /// As the user called it.
@@ -80,17 +106,21 @@ impl Output {
         &self.path
     }
 
-    /// Whether it is `-`.
+    /// Whether it is standard output, as `-` or by another name.
     #[must_use]
     pub fn is_stdout(&self) -> bool {
-        matches!(self.place, Place::Stdout)
+        match &self.place {
+            Place::Stdout => true,
+            Place::Stream(stream) => stream.is_stdout(),
+            Place::File(_) => false,
+        }
     }
 
     pub(super) fn identity(&self) -> Option<Identity> {
         match &self.place {
-            Place::Stdout => None,
-            Place::Stream => Identity::of(&self.path),
+            _ if self.is_stdout() => Identity::of_stdout(),
             Place::File(target) => Identity::of(target),
+            Place::Stream(_) | Place::Stdout => Identity::of(&self.path),
         }
     }
 
@@ -102,8 +132,8 @@ impl Output {
     pub fn write(&self, bytes: &[u8]) -> Result<()> {
         match &self.place {
             Place::Stdout => to_stdout(bytes),
-            Place::Stream => open_stream(&self.path)
-                .and_then(|mut stream| stream.write_all(bytes))
+            Place::Stream(stream) => stream
+                .write(bytes)
                 .map_err(|error| self.explained(error.into(), bytes.len() as u64)),
             Place::File(_) => self.fill(bytes.len() as u64, |mut sink, _| {
                 sink.write_all(bytes)?;
@@ -121,7 +151,7 @@ impl Output {
     ) -> Result<()> {
         let filled = match &self.place {
             Place::Stdout => Err(Failure::Encoding("it is for a file".into())),
-            Place::Stream => self.fill_stream(write),
+            Place::Stream(stream) => self.fill_stream(stream, write),
             Place::File(target) => fill_file(target, write),
         };
         filled.map_err(|failure| self.explained(failure, most))
@@ -135,39 +165,106 @@ impl Output {
                 format!("cannot be encoded: {reason}"),
                 "try another size or format",
             ),
+            Failure::Spool(error) => self.spool_failed(&error, Some(most)),
+            Failure::Kept(error, kept) => self.failed(
+                format!(
+                    "cannot be written: {}; what was to be written is whole in {}",
+                    said(&error),
+                    shown_path(&kept)
+                ),
+                "give that file a name of your own, before its directory is tidied up",
+            ),
             Failure::Io(error) if is_full(&error) => self.failed(
                 format!(
-                    "cannot be written: {}; it takes {:.1} MiB or less",
+                    "cannot be written: {}; it takes {} or less",
                     said(&error),
-                    most as f64 / f64::from(1 << 20)
+                    bytes(most)
                 ),
-                "make room, or name a file on another disk",
+                help_for(&error),
             ),
             Failure::Io(error) => self.failed(
                 format!("cannot be written: {}", said(&error)),
-                "check that the directory exists, may be written and has room",
+                help_for(&error),
             ),
         }
     }
 
     fn fill_stream(
         &self,
+        stream: &Stream,
         write: impl FnOnce(Sink<'_>, &Trouble) -> Result<(), Failure>,
     ) -> Result<(), Failure> {
         // A stream cannot be written in an order of its own, as some kinds of files are.
-        let mut file = tempfile::tempfile()?;
-        into_sink(&mut file, write)?;
-        file.rewind()?;
-        let mut stream = open_stream(&self.path)?;
-        io::copy(&mut file, &mut stream)?;
-        stream.flush()?;
-        Ok(())
+        let spool = match &self.spool {
+            Some(spool) => spool.try_clone(),
+            None => tempfile::tempfile(),
+        };
+        let mut spool = spool.map_err(Failure::Spool)?;
+        let in_spool = |failure| match failure {
+            Failure::Io(error) => Failure::Spool(error),
+            other => other,
+        };
+        let emptied = spool.rewind().and_then(|()| spool.set_len(0));
+        emptied.map_err(Failure::Spool)?;
+        into_sink(&mut spool, write).map_err(in_spool)?;
+        spool.rewind().map_err(Failure::Spool)?;
+        let mut trouble = None;
+        let filled = stream.fill(|put| {
+            let mut piece = [0; 1 << 14];
+            loop {
+                let count = match spool.read(&mut piece) {
+                    Ok(0) => return Ok(()),
+                    Ok(count) => count,
+                    Err(error) if error.kind() == io::ErrorKind::Interrupted => continue,
+                    Err(error) => {
+                        trouble = Some(error);
+                        return Ok(());
+                    }
+                };
+                put(&piece[..count])?;
+            }
+        });
+        match trouble {
+            Some(error) => Err(Failure::Spool(error)),
+            None => Ok(filled?),
+        }
+    }
+
+    /// The error for a temporary file that could not hold what is for a stream.
+    fn spool_failed(&self, error: &io::Error, most: Option<u64>) -> Error {
+        let size = match most {
+            Some(most) if is_full(error) => format!("; it takes {} or less", bytes(most)),
+            _ => String::new(),
+        };
+        failed(
+            &std::env::temp_dir(),
+            format!(
+                "no temporary file can be written there: {}{size}. An image for {} is made in one first",
+                said(error),
+                shown_path(&self.path)
+            ),
+            "set TMPDIR to a directory that may be written and has room, or name a file instead of a stream",
+        )
     }
 
     /// Whether `target` may be made or replaced.
     fn check(&self, target: &Path) -> Result<()> {
         let directory = directory_of(target);
-        if !directory.is_dir() {
+        let about = fs::metadata(directory);
+        if let Err(error) = &about
+            && error.kind() != io::ErrorKind::NotFound
+            && error.kind() != io::ErrorKind::NotADirectory
+        {
+            return Err(self.failed(
+                format!(
+                    "cannot be written: the directory {} cannot be looked up: {}",
+                    shown_path(directory),
+                    said(error)
+                ),
+                help_for(error),
+            ));
+        }
+        if !about.is_ok_and(|about| about.is_dir()) {
             return Err(self.failed(
                 format!(
                     "cannot be written: there is no directory {}",
@@ -176,7 +273,18 @@ impl Output {
                 "make the directory, or name another",
             ));
         }
-        if let Ok(about) = fs::metadata(target) {
+        // A name that cannot be looked up cannot be given either.
+        let old = match fs::symlink_metadata(target) {
+            Ok(about) => Some(about),
+            Err(error) if error.kind() == io::ErrorKind::NotFound => None,
+            Err(error) => {
+                return Err(self.failed(
+                    format!("cannot be written: {}", said(&error)),
+                    help_for(&error),
+                ));
+            }
+        };
+        if let Some(about) = &old {
             let opened = OpenOptions::new().write(true).open(target);
             // Who may write everything is protected from mistakes all the same.
             if about.permissions().readonly() || opened.is_err() {
@@ -190,18 +298,56 @@ impl Output {
                 ));
             }
         }
-        let mut probe = Temporary::in_directory(directory).map_err(|error| {
+        if is_append_only(directory) {
+            return Err(self.failed(
+                format!(
+                    "cannot be written: {} is append-only: what is made there can be given no other name",
+                    shown_path(directory)
+                ),
+                "name a file in another directory (`lsattr -d` shows its attributes, `chattr -a` removes this one)",
+            ));
+        }
+        let unmade = |error: io::Error| {
+            let help = match error.kind() {
+                io::ErrorKind::PermissionDenied => {
+                    "name a file in a directory that may be written: files are made beside their place, and appear whole"
+                }
+                _ => help_for(&error),
+            };
             self.failed(
                 format!(
                     "cannot be written: no file can be made in {}: {}",
                     shown_path(directory),
                     said(&error)
                 ),
-                "name a file in a directory that may be written: files are made beside their place, and appear whole",
+                help,
             )
-        })?;
+        };
+        let mut probe = Temporary::in_directory(directory).map_err(unmade)?;
+        if let Some(old) = &old {
+            let file = probe.file().map_err(unmade)?;
+            take_after(file, old).map_err(|error| {
+                self.failed(
+                    format!(
+                        "cannot be replaced: no other file gets its permissions: {}",
+                        said(&error)
+                    ),
+                    "remove the file, or name another",
+                )
+            })?;
+        }
         remove_dead(directory, &mut probe);
-        Ok(())
+        probe.remove().map_err(|(error, path)| {
+            self.failed(
+                format!(
+                    "cannot be written: what is made in {} cannot be renamed or removed: {}; {} stays there",
+                    shown_path(directory),
+                    said(&error),
+                    shown_path(&path)
+                ),
+                "name a file in another directory",
+            )
+        })
     }
 
     fn failed(&self, reason: impl Into<String>, help: &str) -> Error {
@@ -216,11 +362,24 @@ pub(super) enum Failure {
     Encoding(String),
     /// So many bytes of memory were needed.
     Memory(u64),
+    /// The temporary file that it was to go through cannot be written or read.
+    Spool(io::Error),
+    /// It is whole, and where it is, because it did not get its name.
+    Kept(io::Error, PathBuf),
 }
 
 impl From<io::Error> for Failure {
     fn from(error: io::Error) -> Self {
         Self::Io(error)
+    }
+}
+
+impl From<Unnamed> for Failure {
+    fn from(unnamed: Unnamed) -> Self {
+        match unnamed.kept {
+            Some(kept) => Self::Kept(unnamed.error, kept),
+            None => Self::Io(unnamed.error),
+        }
     }
 }
 
@@ -234,8 +393,13 @@ fn failed(path: &Path, reason: impl Into<String>, help: &str) -> Error {
 
 /// What the system said, without the name of a temporary file.
 fn said(error: &io::Error) -> String {
-    match error.raw_os_error() {
-        Some(_) => error.to_string(),
+    let text = error.to_string();
+    if error.raw_os_error().is_some() {
+        return text;
+    }
+    // So `tempfile` puts it.
+    match text.split_once(" at path \"") {
+        Some((said, _)) => said.into(),
         None => error.kind().to_string(),
     }
 }
@@ -248,14 +412,56 @@ fn is_full(error: &io::Error) -> bool {
     )
 }
 
+/// How to mend what the system said.
+fn help_for(error: &io::Error) -> &'static str {
+    match error.kind() {
+        io::ErrorKind::StorageFull => {
+            "make room (`df` and `df -i` show what is used up), or name a file on another disk"
+        }
+        io::ErrorKind::QuotaExceeded => {
+            "make room (`quota` shows how much you may use), or name a file on another disk"
+        }
+        io::ErrorKind::FileTooLarge => {
+            "allow larger files (`ulimit -f` shows the limit), or name a file on another disk"
+        }
+        io::ErrorKind::InvalidFilename => {
+            "give a shorter name: most file systems take names of 255 bytes"
+        }
+        io::ErrorKind::ReadOnlyFilesystem => "name a file on a disk that may be written",
+        io::ErrorKind::PermissionDenied => {
+            "name a file that you may write, in a directory that you may write"
+        }
+        io::ErrorKind::NotFound | io::ErrorKind::NotADirectory => {
+            "make the directory, or name another"
+        }
+        io::ErrorKind::ConnectionRefused => "start what is to read it before",
+        io::ErrorKind::BrokenPipe | io::ErrorKind::ConnectionReset => {
+            "let what reads it read to the end"
+        }
+        _ => "name another file, or mend what the system says of this one",
+    }
+}
+
+fn stdout_failed(error: &io::Error) -> Error {
+    failed(
+        Path::new("standard output"),
+        format!("cannot be written: {}", said(error)),
+        "check where it is redirected to",
+    )
+}
+
 fn to_stdout(bytes: &[u8]) -> Result<()> {
-    let mut stdout = io::stdout().lock();
-    match stdout.write_all(bytes).and_then(|()| stdout.flush()) {
-        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(failed(
-            Path::new("standard output"),
-            format!("cannot be written: {}", said(&error)),
-            "check where it is redirected to",
-        )),
+    printed(waiting::put(io::stdout().lock(), bytes))
+}
+
+/// What became of printing to standard output. A reader that has gone away is no error.
+///
+/// # Errors
+///
+/// [`Error::Output`] for any other reason.
+pub(crate) fn printed(printed: io::Result<()>) -> Result<()> {
+    match printed {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(stdout_failed(&error)),
         _ => Ok(()),
     }
 }
@@ -299,7 +505,31 @@ fn take_after(file: &File, old: &Metadata) -> io::Result<()> {
         // What the old group could do is not for this one, unless it is for everybody.
         mode &= 0o707 | (mode & 0o7) << 3;
     }
-    file.set_permissions(PermissionsExt::from_mode(mode))
+    match file.set_permissions(PermissionsExt::from_mode(mode)) {
+        // Some file systems have one mode for all.
+        Err(_) if file.metadata()?.mode() & 0o777 & !mode == 0 => Ok(()),
+        set => set,
+    }
+}
+
+/// Whether files can be made in the directory, and not renamed (`chattr +a`).
+#[cfg(all(target_os = "linux", target_env = "gnu"))]
+fn is_append_only(directory: &Path) -> bool {
+    use std::os::unix::ffi::OsStrExt;
+    let Ok(name) = std::ffi::CString::new(directory.as_os_str().as_bytes()) else {
+        return false;
+    };
+    // SAFETY: a struct of numbers, of which zero is a value.
+    let mut about: libc::statx = unsafe { std::mem::zeroed() };
+    // SAFETY: the name ends in a zero, and there is room for what is asked.
+    let asked = unsafe { libc::statx(libc::AT_FDCWD, name.as_ptr(), 0, 0, &raw mut about) };
+    asked == 0 && about.stx_attributes & libc::STATX_ATTR_APPEND as u64 != 0
+}
+
+/// There the first file that cannot be removed tells.
+#[cfg(not(all(target_os = "linux", target_env = "gnu")))]
+fn is_append_only(_directory: &Path) -> bool {
+    false
 }
 
 #[cfg(not(unix))]
@@ -318,7 +548,9 @@ fn place_of(path: &Path) -> Result<Place> {
                 return Err(is_a_directory());
             }
             if !about.is_file() || of_this_process(&target).is_some() {
-                return Ok(Place::Stream);
+                return Stream::new(path)
+                    .map(Place::Stream)
+                    .map_err(|error| cannot_be_opened(path, &error));
             }
         }
         match fs::read_link(&target) {
@@ -336,56 +568,12 @@ fn place_of(path: &Path) -> Result<Place> {
     ))
 }
 
+fn cannot_be_opened(path: &Path, error: &io::Error) -> Error {
+    let reason = format!("cannot be written: {}", said(error));
+    failed(path, reason, help_for(error))
+}
+
 fn ends_in_separator(path: &Path) -> bool {
     let last = path.as_os_str().as_encoded_bytes().last();
     last.is_some_and(|byte| std::path::is_separator(char::from(*byte)))
-}
-
-/// The number of the open file of this process that `path` names, as `/dev/fd/1` does. A link to one is no other
-/// file: renaming one onto what it leads to would not reach whoever reads it.
-fn of_this_process(path: &Path) -> Option<u32> {
-    let directory = directory_of(path);
-    let number = path.file_name()?.to_str()?.parse().ok()?;
-    let own = [Path::new("/dev/fd"), Path::new("/proc/self/fd")]
-        .into_iter()
-        .filter_map(|own| fs::canonicalize(own).ok())
-        .any(|own| fs::canonicalize(directory).is_ok_and(|directory| directory == own));
-    own.then_some(number)
-}
-
-/// Opens what is written into as it is, at its end.
-#[cfg(unix)]
-fn open_stream(path: &Path) -> io::Result<Box<dyn Write>> {
-    use std::os::fd::AsFd;
-    use std::os::unix::fs::FileTypeExt;
-    let mut target = path.to_path_buf();
-    loop {
-        // A copy, which goes on where this process is in the file; a socket can only be had that way.
-        match of_this_process(&target) {
-            Some(1) => {
-                return Ok(Box::new(File::from(
-                    io::stdout().as_fd().try_clone_to_owned()?,
-                )));
-            }
-            Some(2) => {
-                return Ok(Box::new(File::from(
-                    io::stderr().as_fd().try_clone_to_owned()?,
-                )));
-            }
-            _ => {}
-        }
-        match fs::read_link(&target) {
-            Ok(link) => target = directory_of(&target).join(link),
-            Err(_) => break,
-        }
-    }
-    if fs::metadata(path)?.file_type().is_socket() {
-        return Ok(Box::new(std::os::unix::net::UnixStream::connect(path)?));
-    }
-    Ok(Box::new(OpenOptions::new().append(true).open(path)?))
-}
-
-#[cfg(not(unix))]
-fn open_stream(path: &Path) -> io::Result<Box<dyn Write>> {
-    Ok(Box::new(OpenOptions::new().append(true).open(path)?))
 }

@@ -45,6 +45,21 @@ impl Identity {
     }
 }
 
+impl Identity {
+    /// That of standard output, wherever it leads.
+    #[cfg(unix)]
+    pub(super) fn of_stdout() -> Option<Self> {
+        use std::os::unix::fs::MetadataExt;
+        let about = super::stream::stdout().ok()?.metadata().ok()?;
+        (!is_shared(&about)).then(|| Self::There((about.dev(), about.ino())))
+    }
+
+    #[cfg(not(unix))]
+    pub(super) fn of_stdout() -> Option<Self> {
+        None
+    }
+}
+
 #[cfg(unix)]
 fn is_shared(about: &Metadata) -> bool {
     std::os::unix::fs::FileTypeExt::is_char_device(&about.file_type())
@@ -76,7 +91,7 @@ pub fn refuse_clashes(outputs: &[&Output]) -> Result<()> {
         for other in &outputs[..index] {
             if one.is_stdout() && other.is_stdout() {
                 return Err(refused(
-                    one.path(),
+                    one,
                     "two outputs cannot both go to standard output".into(),
                     "give one of them a file",
                 ));
@@ -84,11 +99,8 @@ pub fn refuse_clashes(outputs: &[&Output]) -> Result<()> {
             let identity = one.identity();
             if identity.is_some() && identity == other.identity() {
                 return Err(refused(
-                    one.path(),
-                    format!(
-                        "is the same file as the output {}",
-                        shown_path(other.path())
-                    ),
+                    one,
+                    format!("is the same file as the output {}", name(other)),
                     "give each output a file of its own",
                 ));
             }
@@ -97,7 +109,7 @@ pub fn refuse_clashes(outputs: &[&Output]) -> Result<()> {
     Ok(())
 }
 
-/// Refuses outputs that would replace what was read.
+/// Refuses outputs that would replace what was read, or add to it.
 ///
 /// # Errors
 ///
@@ -108,7 +120,7 @@ pub fn refuse_inputs(outputs: &[&Output], inputs: &[PathBuf]) -> Result<()> {
         for input in inputs {
             if identity.is_some() && identity == Identity::of(input) {
                 return Err(refused(
-                    output.path(),
+                    output,
                     format!("is the same file as the input {}", shown_path(input)),
                     "give the output a file of its own",
                 ));
@@ -118,9 +130,23 @@ pub fn refuse_inputs(outputs: &[&Output], inputs: &[PathBuf]) -> Result<()> {
     Ok(())
 }
 
-fn refused(path: &Path, reason: String, help: &str) -> Error {
+/// What a person calls an output.
+fn name(output: &Output) -> String {
+    if output.path() == Path::new("-") {
+        "on standard output".into()
+    } else {
+        shown_path(output.path())
+    }
+}
+
+fn refused(output: &Output, reason: String, help: &str) -> Error {
+    let path = if output.path() == Path::new("-") {
+        "standard output".into()
+    } else {
+        output.path().into()
+    };
     Error::OutputRefused {
-        path: path.into(),
+        path,
         reason,
         help: help.into(),
     }

@@ -5,7 +5,7 @@
 
 use std::ffi::OsStr;
 use std::fs::{self, File, OpenOptions, TryLockError};
-use std::io;
+use std::io::{self, Seek};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -60,20 +60,105 @@ impl Temporary {
     }
 
     /// Gives the file the name `target`, which has either the old content or the new one at any time, even if the
-    /// machine stops.
-    pub(super) fn rename_to(mut self, target: &Path) -> io::Result<()> {
+    /// machine stops. Where a file that may be written cannot be replaced, it is written instead.
+    pub(super) fn rename_to(mut self, target: &Path) -> Result<(), Unnamed> {
         sync(self.file()?)?;
         let mut live = live();
         let Some(file) = self.file.take() else {
-            return Err(io::ErrorKind::NotFound.into());
+            return Err(io::Error::from(io::ErrorKind::NotFound).into());
         };
         let path = file.path().to_path_buf();
-        // Where that fails, the error holds the file and removes it.
-        let renamed = file.persist(target);
+        let renamed = file.persist(target).map(|_| ()).or_else(|refused| {
+            let mut file = refused.file;
+            match write_in_place(file.as_file_mut(), target, &refused.error) {
+                Some(Ok(())) => Ok(()),
+                Some(Err(error)) => Err(keep(file, target, error)),
+                None => Err(keep(file, target, refused.error)),
+            }
+        });
         live.retain(|one| *one != path);
-        renamed.map_err(|error| error.error)?;
+        renamed?;
         drop(live);
-        sync_directory(super::directory_of(target))
+        Ok(sync_directory(super::directory_of(target))?)
+    }
+
+    /// Removes the file; says which it is if it stays.
+    pub(super) fn remove(mut self) -> Result<(), (io::Error, PathBuf)> {
+        let Some(file) = self.file.take() else {
+            return Ok(());
+        };
+        let mut live = live();
+        let path = file.path().to_path_buf();
+        let closed = file.close();
+        live.retain(|one| *one != path);
+        closed.map_err(|error| (error, path))
+    }
+}
+
+/// Why a file does not have its name.
+#[derive(Debug)]
+pub(super) struct Unnamed {
+    pub(super) error: io::Error,
+    /// What it is called instead, if it is whole.
+    pub(super) kept: Option<PathBuf>,
+}
+
+impl From<io::Error> for Unnamed {
+    fn from(error: io::Error) -> Self {
+        Self { error, kept: None }
+    }
+}
+
+/// Writes what is in `file` into `target`, if that is a file which the system does not replace.
+fn write_in_place(file: &mut File, target: &Path, refused: &io::Error) -> Option<io::Result<()>> {
+    let is_irreplaceable = matches!(
+        refused.kind(),
+        io::ErrorKind::ResourceBusy
+            | io::ErrorKind::PermissionDenied
+            | io::ErrorKind::CrossesDevices
+    );
+    if !is_irreplaceable || !fs::symlink_metadata(target).is_ok_and(|about| about.is_file()) {
+        return None;
+    }
+    let mut options = OpenOptions::new();
+    options.write(true);
+    // Whose directory it is may put a symlink there meanwhile, to what only this user may write.
+    #[cfg(unix)]
+    std::os::unix::fs::OpenOptionsExt::custom_flags(&mut options, libc::O_NOFOLLOW);
+    let mut place = options.open(target).ok()?;
+    if !place.metadata().is_ok_and(|about| about.is_file()) {
+        return None;
+    }
+    let mut write = || {
+        file.rewind()?;
+        place.set_len(0)?;
+        io::copy(file, &mut place)?;
+        sync(&place)
+    };
+    Some(write())
+}
+
+/// Gives a file that did not become `target` a name under which the next run does not remove it.
+fn keep(file: NamedTempFile, target: &Path, error: io::Error) -> Unnamed {
+    let (_file, path) = match file.keep() {
+        Ok(kept) => kept,
+        Err(_) => return error.into(),
+    };
+    let name = path.file_name().and_then(OsStr::to_str).unwrap_or_default();
+    let name = name.trim_start_matches('.').trim_end_matches(SUFFIX);
+    let mut other = path.with_file_name(name);
+    if let Some(extension) = target.extension() {
+        other.set_extension(extension);
+    }
+    let is_free = fs::symlink_metadata(&other).is_err();
+    let kept = if is_free && fs::rename(&path, &other).is_ok() {
+        other
+    } else {
+        path
+    };
+    Unnamed {
+        error,
+        kept: fs::symlink_metadata(&kept).is_ok().then_some(kept),
     }
 }
 
@@ -222,7 +307,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_is_renamed_or_gone() {
+    fn a_file_is_renamed_gone_or_kept() {
         let directory = tempfile::tempdir().expect("a directory");
         drop(Temporary::in_directory(directory.path()).expect("a file"));
         let file = Temporary::in_directory(directory.path()).expect("a file");
@@ -230,7 +315,14 @@ mod tests {
             .expect("renamed");
         let file = Temporary::in_directory(directory.path()).expect("a file");
         fs::create_dir(directory.path().join("folder")).expect("a directory");
-        assert!(file.rename_to(&directory.path().join("folder")).is_err());
+        let target = directory.path().join("folder");
+        let unnamed = file.rename_to(&target).expect_err("a folder is there");
+        let kept = unnamed.kept.expect("a file");
+        assert!(!is_temporary(kept.file_name().expect("a name")));
+        fs::remove_file(kept).expect("it is there");
+        assert_eq!(names(directory.path()), ["folder", "out"]);
+        let file = Temporary::in_directory(directory.path()).expect("a file");
+        file.remove().expect("removed");
         assert_eq!(names(directory.path()), ["folder", "out"]);
     }
 }
