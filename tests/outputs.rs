@@ -832,6 +832,114 @@ fn standard_output_is_shared_with_nothing() {
     .success();
 }
 
+/// Timers, limits and batch systems send these.
+#[test]
+fn other_signals_keep_the_picture_too() {
+    for (signal, code) in [
+        ("XCPU", 152),
+        ("USR1", 138),
+        ("USR2", 140),
+        ("ALRM", 142),
+        ("VTALRM", 154),
+    ] {
+        let directory = with_scene();
+        let path = directory.path();
+        let mut child = writing(path, "out.exr");
+        send(&child, signal);
+        if signal != "USR1" && signal != "USR2" {
+            // Timers go on.
+            std::thread::sleep(Duration::from_millis(50));
+            send(&child, signal);
+        }
+        assert_eq!(
+            child.wait().expect("it ends").code(),
+            Some(code),
+            "{signal}"
+        );
+        assert_eq!(names(path), ["out.exr", "scene.toml"]);
+        image::open(path.join("out.exr")).expect("an image");
+    }
+    // This one wants the process dead, as it is.
+    let directory = with_scene();
+    let path = directory.path();
+    let mut child = writing(path, "out.exr");
+    send(&child, "QUIT");
+    let status = child.wait().expect("it ends");
+    assert_eq!(
+        std::os::unix::process::ExitStatusExt::signal(&status),
+        Some(3)
+    );
+    assert_eq!(names(path), ["scene.toml"]);
+}
+
+/// The processor time that a shell allows is over: the picture is kept.
+#[test]
+fn a_limit_on_processor_time_keeps_the_picture() {
+    let directory = temporary();
+    let path = directory.path();
+    fs::write(path.join("light.toml"), format!("{LIGHT}{SPHERE}")).expect("a scene");
+    let spherule = quoted();
+    let script = format!(
+        "ulimit -St 2; exec {spherule} render light.toml --device cpu --size 512x512 --samples 60000 -o out.png"
+    );
+    shell(path, &script)
+        .code(152)
+        .stderr(contains("interrupted: wrote out.png"));
+    image::open(path.join("out.png")).expect("an image");
+}
+
+/// Nobody reads: the first signal ends what waits for it.
+#[test]
+fn a_signal_ends_what_waits_for_a_reader() {
+    let directory = with_scene();
+    let path = directory.path();
+    make_fifo(&path.join("fifo.png"));
+    let render = |output: &str| {
+        let mut command = std::process::Command::new(cargo_bin("spherule"));
+        command
+            .current_dir(path)
+            .args(["render", "scene.toml", "--device", "cpu", "-q"])
+            .args(["--size", "600x600", "-o", output]);
+        command
+    };
+    let ends = |mut child: Child| {
+        std::thread::sleep(Duration::from_millis(1500));
+        send(&child, "TERM");
+        let sent = Instant::now();
+        while child.try_wait().expect("a child").is_none() {
+            if sent.elapsed() > Duration::from_secs(10) {
+                child.kill().expect("SIGKILL");
+                child.wait().expect("it ends");
+                panic!("the signal was swallowed");
+            }
+            std::thread::sleep(Duration::from_millis(10));
+        }
+        assert_eq!(child.wait().expect("it ends").code(), Some(143));
+    };
+    ends(
+        render("fifo.png")
+            .args(["--shade", "normals"])
+            .spawn()
+            .expect("it starts"),
+    );
+    // It comes while the picture is made, which is kept, and which nobody reads.
+    fs::write(path.join("scene.toml"), format!("{LIGHT}{SPHERE}")).expect("a scene");
+    let mut long = render("fifo.png");
+    long.args(["--samples", "60000"]);
+    ends(long.spawn().expect("it starts"));
+    // A pipe that is full.
+    symlink("/dev/stdout", path.join("so.png")).expect("a link");
+    let mut child = render("so.png")
+        .args(["--shade", "normals"])
+        .stdout(Stdio::piped())
+        .spawn()
+        .expect("it starts");
+    let reader = child.stdout.take().expect("a pipe");
+    ends(child);
+    drop(reader);
+    assert_eq!(names(path), ["fifo.png", "scene.toml", "so.png"]);
+}
+
 #[test]
 fn room_that_is_missing_is_said_in_units_that_fit() {
     let directory = with_scene();

@@ -1,13 +1,19 @@
-//! What happens when somebody wants the command to end: Ctrl-C, `kill`, a terminal that goes away.
+//! What happens when somebody wants the command to end: Ctrl-C, `kill`, a terminal that goes away, a limit on its time, a
+//! batch system.
 //!
 //! The command removes its temporary files and ends with 128 and the signal's number. While something is
 //! [`Graceful`], the first signal only leaves a note, so that the work can end by itself; the next one ends the
-//! command.
+//! command, and so does the first where nothing goes on because an output has no reader. SIGQUIT removes the temporary
+//! files and has the system end the process, with a core.
 
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicI32, AtomicUsize, Ordering};
+use std::time::Duration;
 
-use crate::write::remove_unfinished;
+use crate::write::{longest_wait, remove_unfinished};
+
+/// How long an output may take nothing before it holds the end of the command up.
+const PATIENCE: Duration = Duration::from_secs(1);
 
 /// The first signal's number; 0 before it.
 static REQUESTED: AtomicI32 = AtomicI32::new(0);
@@ -32,7 +38,7 @@ impl Drop for Graceful {
     }
 }
 
-/// The number of the signal that asks the command to end: SIGHUP's 1, SIGINT's 2 or SIGTERM's 15.
+/// The number of the signal that asks the command to end, such as SIGINT's 2 or SIGTERM's 15.
 pub(crate) fn requested() -> Option<i32> {
     match flag().load(Ordering::SeqCst) {
         0 => None,
@@ -52,28 +58,57 @@ pub(crate) fn flag() -> &'static AtomicI32 {
 
 /// What each signal does.
 fn on_signal(signal: i32) {
-    let is_first = REQUESTED
-        .compare_exchange(0, signal, Ordering::SeqCst, Ordering::SeqCst)
-        .is_ok();
-    if is_first && GRACEFUL.load(Ordering::SeqCst) > 0 {
+    if ends_as_it_is(signal) {
+        let _none_is_made_any_more = remove_unfinished();
+        end_by(signal);
+    }
+    let first = REQUESTED.compare_exchange(0, signal, Ordering::SeqCst, Ordering::SeqCst);
+    let is_patient = match first {
+        Ok(_) => true,
+        // A timer that goes on says nothing new.
+        Err(first) => first == signal && is_timer(signal),
+    };
+    if is_patient && GRACEFUL.load(Ordering::SeqCst) > 0 && !waits_in_vain() {
         return;
     }
+    end_with(signal);
+}
+
+fn end_with(signal: i32) -> ! {
     let _none_is_made_any_more = remove_unfinished();
     end(128 + signal);
+}
+
+/// Whether an output has taken nothing for a while.
+fn waits_in_vain() -> bool {
+    longest_wait().is_some_and(|wait| wait >= PATIENCE)
 }
 
 /// Waits for signals from now on. Where that cannot be, they end the process as they do any other.
 #[cfg(unix)]
 pub(crate) fn install() {
-    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGXFSZ};
+    use signal_hook::consts::{
+        SIGALRM, SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGUSR1, SIGUSR2, SIGVTALRM, SIGXCPU, SIGXFSZ,
+    };
+    static ONCE: std::sync::Once = std::sync::Once::new();
+    let mut is_first = false;
+    ONCE.call_once(|| is_first = true);
+    if !is_first {
+        // Two that listen would take one signal for two.
+        return;
+    }
     // A file beyond `ulimit -f` is an error of its writer, not the end of the process.
     // SAFETY: the action does nothing.
     let _ = unsafe { signal_hook::low_level::register(SIGXFSZ, || {}) };
     // What `nohup` or a shell has set aside stays so.
-    let signals: Vec<i32> = [SIGINT, SIGTERM, SIGHUP]
+    let asked = [SIGINT, SIGTERM, SIGHUP]
         .into_iter()
-        .filter(|signal| !is_ignored(*signal))
-        .collect();
+        .filter(|signal| action(*signal) != Some(libc::SIG_IGN));
+    // What the calling program does with one of these is its affair.
+    let others = [SIGQUIT, SIGXCPU, SIGUSR1, SIGUSR2, SIGALRM, SIGVTALRM]
+        .into_iter()
+        .filter(|signal| action(*signal) == Some(libc::SIG_DFL));
+    let signals: Vec<i32> = asked.chain(others).collect();
     let (installed, is_installed) = std::sync::mpsc::channel();
     // Without a thread that listens, signals would be lost.
     let listener = std::thread::Builder::new()
@@ -81,8 +116,8 @@ pub(crate) fn install() {
         .spawn(move || {
             let signals = signal_hook::iterator::Signals::new(signals);
             let _ = installed.send(());
-            if let Ok(mut signals) = signals {
-                signals.forever().for_each(on_signal);
+            if let Ok(signals) = signals {
+                listen(signals);
             }
         });
     if listener.is_ok() {
@@ -91,12 +126,66 @@ pub(crate) fn install() {
 }
 
 #[cfg(unix)]
-fn is_ignored(signal: i32) -> bool {
+fn listen(mut signals: signal_hook::iterator::Signals) {
+    const EVERY: Duration = Duration::from_millis(50);
+    for signal in signals.forever() {
+        on_signal(signal);
+        if requested().is_some() {
+            break;
+        }
+    }
+    // What waits for a reader after the first signal is to end by it, too.
+    loop {
+        signals.pending().for_each(on_signal);
+        if let Some(signal) = requested().filter(|_| waits_in_vain()) {
+            end_with(signal);
+        }
+        std::thread::sleep(EVERY);
+    }
+}
+
+/// Whether who sends the signal wants no picture, but the process as it is.
+#[cfg(unix)]
+fn ends_as_it_is(signal: i32) -> bool {
+    signal == libc::SIGQUIT
+}
+
+#[cfg(not(unix))]
+fn ends_as_it_is(_signal: i32) -> bool {
+    false
+}
+
+/// Whether the system may send the signal again and again.
+#[cfg(unix)]
+fn is_timer(signal: i32) -> bool {
+    matches!(signal, libc::SIGXCPU | libc::SIGALRM | libc::SIGVTALRM)
+}
+
+#[cfg(not(unix))]
+fn is_timer(_signal: i32) -> bool {
+    false
+}
+
+/// Ends the process as the signal does where nobody waits for it.
+#[cfg(unix)]
+fn end_by(signal: i32) -> ! {
+    let _ = signal_hook::low_level::emulate_default_handler(signal);
+    end(128 + signal)
+}
+
+#[cfg(not(unix))]
+fn end_by(signal: i32) -> ! {
+    end(128 + signal)
+}
+
+/// What happens at a signal now.
+#[cfg(unix)]
+fn action(signal: i32) -> Option<libc::sighandler_t> {
     // SAFETY: a struct of numbers and pointers, of which zero is a value.
     let mut action: libc::sigaction = unsafe { std::mem::zeroed() };
     // SAFETY: only the signal's present action is asked for, and there is room for it.
     let asked = unsafe { libc::sigaction(signal, std::ptr::null(), &raw mut action) };
-    asked == 0 && action.sa_sigaction == libc::SIG_IGN
+    (asked == 0).then_some(action.sa_sigaction)
 }
 
 /// Ends the process at once: what it would do at its end may wait for threads that have not ended.

@@ -26,7 +26,7 @@ use std::path::Path;
 pub use image::{Format, Room};
 pub use output::Output;
 pub(crate) use temporary::remove_all as remove_unfinished;
-pub(crate) use waiting::Waiting;
+pub(crate) use waiting::{Waiting, longest as longest_wait};
 
 /// The directory that a file of this name is in.
 fn directory_of(path: &Path) -> &Path {

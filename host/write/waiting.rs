@@ -4,7 +4,7 @@
 
 use std::io::{self, Write};
 use std::sync::{Mutex, MutexGuard, PoisonError};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// Since when each one waits.
 static SINCE: Mutex<Vec<Instant>> = Mutex::new(Vec::new());
@@ -37,6 +37,11 @@ impl Drop for Waiting {
     }
 }
 
+/// How long the longest call that waits now has waited.
+pub(crate) fn longest() -> Option<Duration> {
+    since().iter().map(Instant::elapsed).max()
+}
+
 /// Writes all of `bytes` to who may not read them.
 pub(super) fn put(mut stream: impl Write, bytes: &[u8]) -> io::Result<()> {
     for piece in bytes.chunks(PIECE) {
@@ -45,4 +50,21 @@ pub(super) fn put(mut stream: impl Write, bytes: &[u8]) -> io::Result<()> {
         stream.flush()?;
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_longest_counts_and_what_has_ended_does_not() {
+        let one = Waiting::begin();
+        std::thread::sleep(Duration::from_millis(20));
+        let other = Waiting::begin();
+        assert!(longest() >= Some(Duration::from_millis(20)));
+        drop(one);
+        drop(other);
+        put(io::sink(), &[0; 3 * PIECE + 1]).expect("written");
+        assert!(longest() < Some(Duration::from_millis(20)));
+    }
 }
