@@ -549,6 +549,102 @@ fn make_fifo(path: &Path) {
 /// A light scene, so that samples are taken.
 const LIGHT: &str = "[image]\nwidth = 16\nheight = 16\nsamples = 4\n[sky]\nhorizon = [1, 1, 1]\n";
 
+/// Each scene's files are checked against what is read for any of them, before any is written.
+#[test]
+fn an_export_replaces_no_input() {
+    let directory = with_scene();
+    let path = directory.path();
+    let scene = "[image]\nwidth = 8\nheight = 8\n[particles]\nfile = \"atoms.xyz\"\n";
+    fs::write(path.join("atoms.toml"), scene).expect("a scene");
+    fs::write(path.join("atoms.xyz"), "1\n\nC 0 0 0\n").expect("atoms");
+    let inputs = ["scene.toml", "atoms.toml", "atoms.xyz"];
+    let content = || inputs.map(|input| fs::read(path.join(input)).expect("an input"));
+    let before = content();
+    let export = ["bench", "--device", "cpu", "--size", "8x8", "--export", "D"];
+    for input in inputs {
+        for name in ["meta.json", "spheres.f32", "primary.hits"] {
+            for folder in ["D", "D/S2", "D/scene.toml"] {
+                fs::create_dir_all(path.join(folder)).expect("a folder");
+                symlink(path.join(input), path.join(folder).join(name)).expect("a link");
+                let scenes: &[&str] = match folder {
+                    "D" => &["atoms.toml"],
+                    _ => &["S2", "scene.toml", "atoms.toml"],
+                };
+                if folder == "D" && input == "scene.toml" {
+                    fs::remove_dir_all(path.join("D")).expect("a folder");
+                    continue;
+                }
+                let scenes = scenes.iter().flat_map(|scene| ["--scene", scene]);
+                spherule(path)
+                    .args(export)
+                    .args(scenes)
+                    .assert()
+                    .code(2)
+                    .stderr(
+                        contains("is the same file as the input")
+                            .and(contains(input))
+                            .and(contains("wrote").not()),
+                    );
+                fs::remove_dir_all(path.join("D")).expect("a folder");
+            }
+        }
+    }
+    // Two of the files are one.
+    fs::create_dir(path.join("D")).expect("a folder");
+    symlink("spheres.f32", path.join("D/meta.json")).expect("a link");
+    spherule(path)
+        .args(export)
+        .args(["--scene", "S2"])
+        .assert()
+        .code(2)
+        .stderr(contains("is the same file as the output"));
+    assert_eq!(names(&path.join("D")), ["meta.json"]);
+    assert_eq!(content(), before);
+}
+
+/// What a scene reads is known before another is measured.
+#[test]
+fn a_later_scene_of_a_bench_is_checked_before_the_first_is_measured() {
+    let directory = with_scene();
+    let path = directory.path();
+    fs::write(path.join("wrong.toml"), "[[sphere]]\nradius = -1\n").expect("a scene");
+    spherule(path)
+        .args(BENCH)
+        .args(["--scene", "wrong.toml"])
+        .assert()
+        .code(2)
+        .stdout("");
+}
+
+#[test]
+fn an_export_of_several_scenes_has_a_folder_for_each() {
+    let directory = with_scene();
+    let path = directory.path();
+    let export = ["bench", "--device", "cpu", "--size", "8x8", "--export", "D"];
+    spherule(path)
+        .args(export)
+        .args(["--scene", "scene.toml", "--scene", "s2"])
+        .assert()
+        .success();
+    assert_eq!(names(&path.join("D")), ["S2", "scene.toml"]);
+    for (folder, spheres) in [("S2", 2), ("scene.toml", 1)] {
+        let meta = fs::read(path.join("D").join(folder).join("meta.json")).expect("a file");
+        let meta: serde_json::Value = serde_json::from_slice(&meta).expect("JSON");
+        assert_eq!(meta["spheres"], spheres);
+    }
+    fs::create_dir(path.join("other")).expect("a folder");
+    fs::copy(path.join("scene.toml"), path.join("other/scene.toml")).expect("a copy");
+    for twice in [["S2", "s2"], ["scene.toml", "other/scene.toml"]] {
+        let scenes = twice.iter().flat_map(|scene| ["--scene", scene]);
+        spherule(path)
+            .args(export)
+            .args(scenes)
+            .assert()
+            .code(2)
+            .stderr(contains("two scenes").and(contains("wrote").not()));
+    }
+}
+
 #[test]
 fn a_name_that_is_too_long_is_refused_before_the_work() {
     let directory = with_scene();
@@ -745,6 +841,7 @@ fn standard_output_is_shared_with_nothing() {
     symlink("/dev/stdout", path.join("so.png")).expect("a link");
     let render = format!("{spherule} render input.toml --device cpu");
     let accuracy = format!("{spherule} accuracy --device cpu --rays 1000");
+    let bench = format!("{spherule} bench --device cpu --no-limit --size 8x8 --rounds 1");
     let content = fs::read(path.join("input.toml")).expect("a file");
     for (script, message) in [
         (
@@ -784,6 +881,18 @@ fn standard_output_is_shared_with_nothing() {
             "standard output",
         ),
         (
+            format!("{bench} --scene input.toml 1<> input.toml"),
+            "the input input.toml",
+        ),
+        (
+            format!("{bench} --scene input.toml --verify 1<> input.toml"),
+            "the input input.toml",
+        ),
+        (
+            format!("{bench} --scene S2 --json n.json > n.json"),
+            "standard output",
+        ),
+        (
             format!("{spherule} explain --no-costs --device cpu input.toml 1<> input.toml"),
             "the input input.toml",
         ),
@@ -808,7 +917,10 @@ fn standard_output_is_shared_with_nothing() {
     }
     // By another name it is the same.
     for name in ["-", "/dev/stdout", "/dev/fd/1"] {
-        for command in [format!("{accuracy} --scene far --json {name}")] {
+        for command in [
+            format!("{accuracy} --scene far --json {name}"),
+            format!("{bench} --scene S2 --json {name}"),
+        ] {
             for to in ["| cat", "> both; cat both"] {
                 let assert = shell(path, &format!("{command} {to}")).success();
                 let read = serde_json::from_slice::<serde_json::Value>(&assert.get_output().stdout);
@@ -976,4 +1088,43 @@ fn help_that_cannot_be_printed_is_an_error() {
             .success()
             .stderr("");
     }
+}
+
+#[test]
+fn names_need_not_be_unicode() {
+    use std::os::unix::ffi::OsStrExt;
+    let directory = with_scene();
+    let path = directory.path();
+    let name =
+        |end: &str| std::ffi::OsStr::from_bytes(&[b"\xff", end.as_bytes()].concat()).to_owned();
+    spherule(path)
+        .args(RENDER)
+        .arg(name(".png"))
+        .assert()
+        .success();
+    image::open(path.join(name(".png"))).expect("an image");
+    fs::rename(path.join("scene.toml"), path.join(name(".toml"))).expect("a name");
+    spherule(path)
+        .args(ACCURACY)
+        .arg("--size")
+        .arg("8x8")
+        .arg("--scene")
+        .arg(name(".toml"))
+        .assert()
+        .success();
+    spherule(path)
+        .args([
+            "bench",
+            "--device",
+            "cpu",
+            "--no-limit",
+            "--size",
+            "8x8",
+            "--rounds",
+            "1",
+            "--scene",
+        ])
+        .arg(name(".toml"))
+        .assert()
+        .success();
 }

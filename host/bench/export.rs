@@ -9,19 +9,20 @@
 //! | `KIND.f32` | of each ray its origin, `t_min`, direction, `t_max` |
 //! | `KIND.hits` | of each ray t and the sphere's index (`u32::MAX` for none), or 1 or 0 where any hit would do |
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use bytemuck::cast_slice;
 use serde_json::json;
 use spherule_kernel::Rung;
 
 use super::rays::{Kind, RaySets};
+use super::scenes::Source;
 use crate::error::{Error, Result};
 use crate::render::whole_image;
 use crate::scene::Scene;
 use crate::trace::CpuTracer;
 use crate::write::Output;
-use crate::write::same::refuse_inputs;
+use crate::write::same::{refuse_clashes, refuse_inputs};
 
 /// Makes `folder` if need be, and checks that files can be made in it.
 ///
@@ -34,8 +35,56 @@ pub fn prepare(folder: &Path) -> Result<()> {
         reason: format!("cannot be made: {error}"),
         help: "name a folder in a directory that may be written".into(),
     })?;
-    Output::new(&folder.join("meta.json"))?;
+    outputs(folder)?;
     Ok(())
+}
+
+/// The names of the files.
+fn names() -> impl Iterator<Item = String> {
+    let of_scene = ["meta.json", "spheres.f32", "nodes.u32", "order.u32"];
+    let of_kinds = Kind::ALL
+        .into_iter()
+        .flat_map(|kind| ["f32", "hits"].map(|end| format!("{}.{end}", kind.name())));
+    of_scene.into_iter().map(Into::into).chain(of_kinds)
+}
+
+/// The files in `folder`, which is there, as they are before anything is written.
+///
+/// # Errors
+///
+/// [`Error::Output`] for one that cannot be written.
+pub(crate) fn outputs(folder: &Path) -> Result<Vec<Output>> {
+    names()
+        .map(|name| Output::new(&folder.join(name)))
+        .collect()
+}
+
+/// The folder of each of the scenes: `folder` itself for one, and a folder in it for each of several.
+///
+/// # Errors
+///
+/// [`Error::OutputRefused`] if two scenes would have one folder.
+pub(crate) fn folders(folder: &Path, scenes: &[Source]) -> Result<Vec<PathBuf>> {
+    if scenes.len() == 1 {
+        return Ok(vec![folder.into()]);
+    }
+    let folders: Vec<PathBuf> = scenes
+        .iter()
+        .map(|scene| match scene {
+            Source::Made(scene) => folder.join(scene.name()),
+            Source::File(file) => folder.join(file.file_name().unwrap_or(file.as_os_str())),
+        })
+        .collect();
+    for (index, one) in folders.iter().enumerate() {
+        if folders[..index].contains(one) {
+            return Err(Error::OutputRefused {
+                path: one.clone(),
+                reason: "is the folder of two scenes".into(),
+                help: "give each scene once; files of one name need a run and a folder each".into(),
+            });
+        }
+    }
+    Ok(folders)
 }
 
 /// Writes the files into `folder`, which is there.
@@ -43,7 +92,7 @@ pub fn prepare(folder: &Path) -> Result<()> {
 /// # Errors
 ///
 /// [`Error::Output`] for a file that cannot be written, [`Error::OutputRefused`] for one that the scene was read
-/// from, and as [`whole_image`].
+/// from or that is another of them, and as [`whole_image`].
 pub fn export(
     folder: &Path,
     name: &str,
@@ -52,10 +101,17 @@ pub fn export(
     tracer: &CpuTracer,
     rung: Rung,
 ) -> Result<()> {
+    // All of them are looked at before any is written.
+    let outputs = outputs(folder)?;
+    let all: Vec<&Output> = outputs.iter().collect();
+    refuse_clashes(&all)?;
+    refuse_inputs(&all, &scene.sources)?;
     let put = |file: &str, bytes: &[u8]| {
-        let output = Output::new(&folder.join(file))?;
-        refuse_inputs(&[&output], &scene.sources)?;
-        output.write(bytes)
+        let path = folder.join(file);
+        match outputs.iter().find(|output| output.path() == path) {
+            Some(output) => output.write(bytes),
+            None => Output::new(&path)?.write(bytes),
+        }
     };
     let camera = whole_image(scene)?.camera;
     let half_height = camera.up.length();

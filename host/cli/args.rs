@@ -1,8 +1,10 @@
 //! The arguments, and the help texts.
 
+use std::ffi::OsString;
 use std::path::PathBuf;
 use std::str::FromStr;
 
+use clap::builder::{OsStringValueParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use spherule_kernel::{Effects, Rung, Shading};
 
@@ -51,7 +53,7 @@ pub(super) struct RenderArguments {
     pub(super) input: PathBuf,
 
     /// The image to write: 8-bit PNG, or linear 32-bit float EXR [default: the input's name with .png, in the current directory]
-    #[arg(short, long, value_name = "OUT.png|OUT.exr", value_parser = image_path)]
+    #[arg(short, long, value_name = "OUT.png|OUT.exr", value_parser = OsStringValueParser::new().try_map(image_path))]
     pub(super) output: Option<PathBuf>,
 
     /// The image's size in pixels [default: the scene's, or 1280x720]
@@ -145,7 +147,7 @@ pub(super) struct AccuracyArguments {
 
     /// Measure this family only (generic, far, ground, tangent, surface or inside), or the rays and
     /// the frames of a scene file
-    #[arg(long, value_name = "FAMILY|FILE", value_parser = subject)]
+    #[arg(long, value_name = "FAMILY|FILE", value_parser = OsStringValueParser::new().try_map(subject))]
     pub(super) scene: Option<Subject>,
 
     /// Measure the error of this scene's image as its samples grow, and what they cost
@@ -218,7 +220,7 @@ pub(super) struct BenchArguments {
 
     /// Measure this scene only: a name, or a file (.toml, .pdb, .ent or .xyz); may be given again [default: all but R10M]
     #[arg(long, value_name = "NAME|FILE")]
-    pub(super) scene: Vec<String>,
+    pub(super) scene: Vec<OsString>,
 
     /// The image's size in pixels
     #[arg(long, value_name = "WxH", default_value = "1920x1080")]
@@ -248,7 +250,8 @@ pub(super) struct BenchArguments {
     #[arg(long, conflicts_with_all = ["json", "export", "precision", "acceleration"])]
     pub(super) verify: bool,
 
-    /// Measure nothing: write the scene's spheres, rays and hits as files into this folder, for other programs
+    /// Measure nothing: write the scene's spheres, rays and hits as files into this folder, for other programs; of several
+    /// scenes each has a folder in it, called as the scene or its file
     #[arg(
         long,
         value_name = "FOLDER",
@@ -311,7 +314,10 @@ pub(super) enum Subject {
     Scene(PathBuf),
 }
 
-fn subject(text: &str) -> Result<Subject, String> {
+fn subject(text: OsString) -> Result<Subject, String> {
+    let Some(text) = text.to_str() else {
+        return Ok(Subject::Scene(text.into()));
+    };
     let family = Family::ALL.into_iter().find(|family| family.name() == text);
     match family {
         Some(family) => Ok(Subject::Family(family)),
@@ -460,8 +466,8 @@ impl FromStr for Size {
     }
 }
 
-fn image_path(text: &str) -> Result<PathBuf, String> {
-    let path = PathBuf::from(text);
+fn image_path(name: OsString) -> Result<PathBuf, String> {
+    let path = PathBuf::from(name);
     match Format::of(&path) {
         Ok(_) => Ok(path),
         Err(error) => Err(error.help()),

@@ -1,13 +1,14 @@
 //! `spherule bench`: how fast rays of every kind are here.
 
-use std::path::PathBuf;
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use serde::Serialize;
 
 use super::args::BenchArguments;
 use super::{note, print, write_json};
-use crate::bench::export::{export, prepare};
+use crate::bench::export::{self, export};
 use crate::bench::limit::Limit;
 use crate::bench::measure::{Measured, Plan, Speed, measure};
 use crate::bench::rays::RaySets;
@@ -15,11 +16,12 @@ use crate::bench::scenes::{BenchScene, Source};
 use crate::bench::verify::{Verified, verify};
 use crate::device::Device;
 use crate::error::Result;
+use crate::scene::Scene;
 use crate::scene::tree::Acceleration;
 use crate::shown::shown_path;
 use crate::trace::CpuTracer;
 use crate::write::Output;
-use crate::write::same::refuse_inputs;
+use crate::write::same::{refuse_clashes, refuse_inputs};
 use spherule_kernel::Rung;
 
 /// What `--json` writes.
@@ -42,32 +44,60 @@ pub(super) fn run(arguments: &BenchArguments) -> Result<ExitCode> {
     let names = if arguments.scene.is_empty() {
         let all = BenchScene::ALL.map(BenchScene::name);
         // Its making alone takes longer than all of the others.
-        all.into_iter().filter(|name| name != "R10M").collect()
+        all.into_iter()
+            .filter(|name| name != "R10M")
+            .map(Into::into)
+            .collect()
     } else {
         arguments.scene.clone()
     };
     // Every name is looked at, and what it needs, before anything is measured.
     let sources = names
         .iter()
-        .map(|name| Ok((name.as_str(), Source::named(name)?)))
+        .map(|name| source(name))
         .collect::<Result<Vec<_>>>()?;
     RaySets::check_room(size.width, size.height)?;
-    for (_, source) in &sources {
-        if let Source::Made(scene) = source {
-            scene.check_room()?;
+    let folders = match &arguments.export {
+        Some(folder) => export::folders(folder, &sources)?,
+        None => Vec::new(),
+    };
+    let mut outputs: Vec<Output> = json.into_iter().collect();
+    // The tables go there, unless what a program reads does.
+    if !outputs.iter().any(Output::is_stdout) && folders.is_empty() {
+        outputs.push(Output::stdout()?);
+    }
+    for folder in &folders {
+        export::prepare(folder)?;
+        outputs.extend(export::outputs(folder)?);
+    }
+    let json = arguments.json.as_ref().and(outputs.first());
+    let outputs: Vec<&Output> = outputs.iter().collect();
+    refuse_clashes(&outputs)?;
+    for source in &sources {
+        match source {
+            Source::Made(scene) => scene.check_room()?,
+            Source::File(file) => refuse_inputs(&outputs, std::slice::from_ref(file))?,
         }
     }
-    let outputs: Vec<&Output> = json.iter().collect();
-    let files = names.iter().map(PathBuf::from);
-    let files: Vec<PathBuf> = files.filter(|file| file.exists()).collect();
-    refuse_inputs(&outputs, &files)?;
-    if let Some(folder) = &arguments.export {
-        prepare(folder)?;
-        for (name, source) in &sources {
-            let (scene, reach) = source.load(size.width, size.height)?;
+    let scenes = names
+        .iter()
+        .zip(sources)
+        .map(|(name, source)| {
+            let name = shown_path(Path::new(name));
+            let scene = Named::new(name, source, arguments)?;
+            if let Some((scene, _)) = &scene.read {
+                refuse_inputs(&outputs, &scene.sources)?;
+            }
+            Ok(scene)
+        })
+        .collect::<Result<Vec<_>>>()?;
+    if !folders.is_empty() {
+        for (scene, folder) in scenes.into_iter().zip(&folders) {
+            let name = scene.name.clone();
+            let (scene, reach) = scene.take(arguments)?;
             let tracer = CpuTracer::new(&scene.world.spheres, plan.acceleration);
             let sets = RaySets::of(&scene, &tracer, reach)?;
-            export(folder, name, &scene, &sets, &tracer, plan.rung)?;
+            export(folder, &name, &scene, &sets, &tracer, plan.rung)?;
             note(&format!("wrote {name} to {}", shown_path(folder)));
         }
         return Ok(ExitCode::SUCCESS);
@@ -76,10 +106,10 @@ pub(super) fn run(arguments: &BenchArguments) -> Result<ExitCode> {
     let (device, why) = Device::open(&arguments.device)?;
     note(&format!("{} ({why})", device.name()));
     if arguments.verify {
-        return compare(arguments, &device, &sources);
+        return compare(arguments, &device, scenes);
     }
     // Numbers that a program reads stand alone.
-    let to_stdout = json.as_ref().is_some_and(Output::is_stdout);
+    let to_stdout = json.is_some_and(Output::is_stdout);
     let show = |text: &str| if to_stdout { Ok(()) } else { print(text) };
     let mut limit = None;
     if !arguments.no_limit {
@@ -92,14 +122,14 @@ pub(super) fn run(arguments: &BenchArguments) -> Result<ExitCode> {
     }
     show(&head(size.width, size.height, plan, limit.is_some()))?;
     let mut all = Vec::new();
-    for (name, source) in &sources {
-        let (scene, reach) = source.load(size.width, size.height)?;
-        refuse_inputs(&outputs, &scene.sources)?;
-        let measured = measure(&device, name, &scene, reach, plan, limit.as_ref())?;
+    for scene in scenes {
+        let name = scene.name.clone();
+        let (scene, reach) = scene.take(arguments)?;
+        let measured = measure(&device, &name, &scene, reach, plan, limit.as_ref())?;
         show(&row(&measured))?;
         all.push(measured);
     }
-    if let Some(output) = &json {
+    if let Some(output) = json {
         let report = Report {
             device: device.name(),
             limit,
@@ -110,20 +140,52 @@ pub(super) fn run(arguments: &BenchArguments) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
+/// A scene that is measured.
+struct Named {
+    name: String,
+    source: Source,
+    /// What a file holds. It is read before anything is written or measured, and once: it may be a pipe.
+    read: Option<(Scene, f32)>,
+}
+
+impl Named {
+    fn new(name: String, source: Source, arguments: &BenchArguments) -> Result<Self> {
+        let size = arguments.size;
+        let read = match source {
+            Source::Made(_) => None,
+            Source::File(_) => Some(source.load(size.width, size.height)?),
+        };
+        Ok(Self { name, source, read })
+    }
+
+    /// The scene, and how far away something must be to be no ambient occluder.
+    fn take(self, arguments: &BenchArguments) -> Result<(Scene, f32)> {
+        let size = arguments.size;
+        match self.read {
+            Some(read) => Ok(read),
+            None => self.source.load(size.width, size.height),
+        }
+    }
+}
+
+/// What a name stands for, which need not be Unicode if it is a file's.
+fn source(name: &OsStr) -> Result<Source> {
+    match name.to_str() {
+        None if Path::new(name).is_file() => Ok(Source::File(PathBuf::from(name))),
+        _ => Source::named(&name.to_string_lossy()),
+    }
+}
+
 /// The tree's answers against those of testing every sphere.
-fn compare(
-    arguments: &BenchArguments,
-    device: &Device,
-    sources: &[(&str, Source)],
-) -> Result<ExitCode> {
-    let size = arguments.size;
+fn compare(arguments: &BenchArguments, device: &Device, scenes: Vec<Named>) -> Result<ExitCode> {
     let mut all = Verified::default();
     print(&format!(
         "{:<12} {:<12} {:>10} {:>10} {:>10}\n",
         "scene", "precision", "rays", "differing", "ties"
     ))?;
-    for (name, source) in sources {
-        let (scene, reach) = source.load(size.width, size.height)?;
+    for scene in scenes {
+        let name = scene.name.clone();
+        let (scene, reach) = scene.take(arguments)?;
         let tracer = CpuTracer::new(&scene.world.spheres, Acceleration::Auto);
         let sets = RaySets::of(&scene, &tracer, reach)?;
         for rung in Rung::ALL {
