@@ -2465,6 +2465,7 @@ impl Odd for spherule::render::Rendered {
         spherule::render::Rendered {
             image: Odd::odd(s),
             traced: Odd::odd(s),
+            rays: Odd::odd(s),
             timings: Odd::odd(s),
             reached: Odd::odd(s),
         }
