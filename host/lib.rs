@@ -20,6 +20,8 @@
 //! | [`threads`] | the pool of threads that work on the CPU is done by |
 //! | `memory` | memory of the host that may not be there |
 //! | [`kernel_module`] | the kernel's SPIR-V that this build embeds |
+//! | [`cpu`] | which vector instructions rays are traced with on the CPU |
+//! | `lanes` | vectors as the kernel's numbers |
 //! | `plural` | counts with their nouns |
 //! | `shown` | texts of unknown origin, as a terminal may show them |
 //! | [`cli`] | the command `spherule` |
@@ -29,10 +31,12 @@
 pub mod accuracy;
 pub mod bench;
 pub mod cli;
+pub mod cpu;
 pub mod device;
 pub mod error;
 pub mod film;
 pub mod kernel_module;
+mod lanes;
 mod memory;
 mod plural;
 pub mod render;

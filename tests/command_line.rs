@@ -9,6 +9,7 @@ use assert_cmd::Command;
 use common::skips;
 use predicates::prelude::*;
 use predicates::str::contains;
+use spherule::cpu::InstructionSet;
 
 fn spherule() -> Command {
     let mut command = Command::cargo_bin("spherule").expect("the binary is built");
@@ -1080,4 +1081,49 @@ fn accuracy_measures_scenes_and_samples() {
         .assert()
         .code(2)
         .stderr(contains("calls for no effect"));
+}
+
+/// The picture does not depend on the instructions that it was traced with; those that are not there are refused.
+#[test]
+fn instructions_are_chosen_by_the_environment() {
+    let dir = temporary();
+    let output = dir.path().join("out.png");
+    let render = |instructions: &str, scene: &str, precision: &str| {
+        let mut command = spherule();
+        command
+            .env("SPHERULE_CPU", instructions)
+            .args(["render", scene, "--device", "cpu", "--size", "96x54"])
+            .args(["--precision", precision, "-o"]);
+        command.arg(&output).assert()
+    };
+    let there: Vec<_> = InstructionSet::ALL
+        .into_iter()
+        .filter(|instructions| instructions.is_there())
+        .collect();
+    for scene in ["scenes/1crn.pdb", "scenes/soft-light.toml"] {
+        for precision in ["textbook", "robust", "compensated", "double", "certified"] {
+            let pictures: Vec<Vec<u8>> = there
+                .iter()
+                .map(|instructions| {
+                    render(instructions.name(), scene, precision).success();
+                    std::fs::read(&output).expect("a picture")
+                })
+                .collect();
+            let are_equal = pictures.windows(2).all(|pair| pair[0] == pair[1]);
+            assert!(are_equal, "{scene} on {precision}");
+        }
+    }
+    let scene = "scenes/two-spheres.toml";
+    for wrong in ["mmx", "AVX2 ", "\u{1b}[31m"] {
+        render(wrong, scene, "robust").code(2).stderr(
+            contains("SPHERULE_CPU")
+                .and(contains("give one of"))
+                .and(contains("\u{1b}").not()),
+        );
+    }
+    if cfg!(not(target_arch = "x86_64")) {
+        render("avx2", scene, "robust")
+            .code(2)
+            .stderr(contains("does not have"));
+    }
 }

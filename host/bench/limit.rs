@@ -9,8 +9,8 @@
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
+use fearless_simd::{Level, Simd, dispatch};
 use glam::Vec4;
-use multiversion::multiversion;
 use rayon::prelude::*;
 use serde::Serialize;
 use spherule_kernel::throughput::MULTIPLICATIONS;
@@ -19,9 +19,11 @@ use spherule_kernel::{Hit, Pixel, Ray};
 
 use super::measure::WARM_UP;
 use super::rays::Kind;
+use crate::cpu::InstructionSet;
 use crate::device::{Access, Device, Gpu};
 use crate::error::Result;
 use crate::kernel_module;
+use crate::lanes::{LANES, Single16};
 
 /// Operations of a test. A box: six multiply-adds, six comparisons for the largest and the smallest, one of these two. A
 /// sphere, by its discriminant: three differences, three products for each of o·d and o·o, one for c, two for the
@@ -81,21 +83,25 @@ fn fastest(mut round: impl FnMut() -> Result<f64>) -> Result<f64> {
 }
 
 /// Products that do not wait for each other, `rounds` factors each.
-#[multiversion(targets(
-    "x86_64+avx512f+avx512vl+avx512bw+avx512dq+avx2+fma",
-    "x86_64+avx2+fma",
-    "aarch64+neon"
-))]
-fn products(factor: f32, rounds: u32) -> f32 {
-    let mut products = [[1.0_f32; 16]; PRODUCTS];
-    for _ in 0..rounds {
-        for lanes in &mut products {
-            for lane in lanes {
-                *lane *= factor;
+fn products(level: Level, factor: f32, rounds: u32) -> f32 {
+    #[inline(always)]
+    fn with<S: Simd>(simd: S, factor: f32, rounds: u32) -> f32 {
+        let mut products = [Single16::splat(simd, 1.0); PRODUCTS];
+        let factor = Single16::splat(simd, factor);
+        for _ in 0..rounds {
+            for product in &mut products {
+                *product = *product * factor;
             }
         }
+        let mut sum = [0.0; LANES];
+        let zero = Single16::splat(simd, 0.0);
+        let all = products
+            .into_iter()
+            .fold(zero, |sum, product| sum + product);
+        all.store(&mut sum);
+        sum.iter().sum()
     }
-    products.as_flattened().iter().sum()
+    dispatch!(level, simd => with(simd, factor, rounds))
 }
 
 /// As many as hide how long a multiplication takes, and fit the registers.
@@ -103,10 +109,14 @@ const PRODUCTS: usize = 10;
 
 fn multiply_on_cpu() -> Result<f64> {
     const FACTORS: u32 = 2_000_000;
+    let level = InstructionSet::chosen()
+        .level()
+        .unwrap_or(Level::baseline());
     fastest(|| {
         let started = Instant::now();
-        let threads = rayon::broadcast(|_| black_box(products(black_box(0.999_999_9), FACTORS)));
-        let done = threads.len() as f64 * f64::from(FACTORS) * (16 * PRODUCTS) as f64;
+        let threads =
+            rayon::broadcast(|_| black_box(products(level, black_box(0.999_999_9), FACTORS)));
+        let done = threads.len() as f64 * f64::from(FACTORS) * (LANES * PRODUCTS) as f64;
         Ok(done / started.elapsed().as_secs_f64())
     })
 }

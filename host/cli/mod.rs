@@ -29,6 +29,7 @@ use tracing_subscriber::prelude::*;
 
 use args::{Arguments, Command};
 
+use crate::cpu::InstructionSet;
 use crate::error::{Error, Result, SceneError};
 use crate::plural::count_of;
 use crate::scene::Scene;
@@ -64,7 +65,8 @@ pub fn run(arguments: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> 
         Ok(arguments) => arguments,
         Err(error) => return without_arguments(&error, &words),
     };
-    let done = start_threads().and_then(|()| match arguments.command {
+    let ready = InstructionSet::wanted().and_then(|_| start_threads());
+    let done = ready.and_then(|()| match arguments.command {
         Command::Render(arguments) => render::run(&arguments),
         Command::Devices(arguments) => devices::run(&arguments),
         Command::Check(arguments) => check::run(&arguments),

@@ -11,6 +11,7 @@ use spherule_kernel::{Launch, Pixel, Rung, Shading};
 
 use super::packet::{self, Frusta, Packet, SIDE};
 use super::{Progress, Settings, check_launch, check_pixels};
+use crate::cpu::InstructionSet;
 use crate::error::Result;
 use crate::film;
 use crate::scene::World;
@@ -136,7 +137,7 @@ fn bands<const SHADING: u32, const RUNG: u32>(
         .par_chunks_mut(width * SIDE)
         .enumerate()
         .for_each(|(band, pixels)| {
-            let mut packet = Packet::new();
+            let mut packet = Packet::new(InstructionSet::chosen());
             let rows = pixels.len() / width;
             // One that takes long may be the first.
             let (mut asked_at, mut next, mut squares) = (Instant::now(), 0, 1);

@@ -97,7 +97,7 @@ fn size(whole: (u32, u32), pixels: f64) -> (u32, u32) {
 ///
 /// # Errors
 ///
-/// As [`render`](super::render).
+/// As [`render`].
 pub(crate) fn probe(
     scene: &Scene,
     settings: Settings,

@@ -3,30 +3,32 @@
 //! The rays of a square share their origin. Four planes through the eye and the sides of the square
 //! bound them all, so that boxes are tested once for 64 rays; the eight boxes of a node are tested side by side.
 //! Four more planes along the square's middle tell which of its quarters a sphere may be seen in.
-//! There it is tested against 16 rays side by side by the few operations of [`candidates`], and
+//! There it is tested against 16 rays side by side by the few operations of [`candidates`](spherule_kernel::candidates), and
 //! only what may be a hit is asked about on its rung: on [`Rung::Robust`] and [`Rung::Double`] 16 rays side by side again, with the
 //! very operations of the kernel, in their order; on [`Rung::Compensated`] and [`Rung::Certified`] about the nearest at the end,
-//! and about what [`bounds`] leave open.
+//! and about what [`bounds`](spherule_kernel::bounds) leave open.
 //!
-//! Loops over arrays become vector instructions; `multiversion` compiles them for several
-//! instruction sets and chooses one when the program runs.
+//! The formulas are the kernel's, over [`Single16`] and [`Double16`]. Loops over the eight boxes of a node become vector
+//! instructions; all is compiled for each instruction set, and chosen by the packet's [`InstructionSet`].
 
+use fearless_simd::{Level, Select, Simd, SimdBase, SimdMask, dispatch, mask32x16, u32x16};
 use glam::{DVec3, UVec2, UVec4, Vec2, Vec3};
-use multiversion::multiversion;
-use spherule_kernel::bounds;
-use spherule_kernel::candidates;
-use spherule_kernel::precision::intersect;
+use spherule_kernel::bounds::Aim;
+use spherule_kernel::candidates::Target;
+use spherule_kernel::lane::{Lane, Lane3};
+use spherule_kernel::precision::{double, intersect, robust};
 use spherule_kernel::tree::{Extent, Node, Tree};
 use spherule_kernel::{Camera, Hit, Launch, Ray, Rung, Sphere};
 
-/// Rays side by side.
-const LANES: usize = 16;
+use crate::cpu::InstructionSet;
+use crate::lanes::{Double16, LANES, Single16};
+
 /// Pixels of a square's side.
 pub const SIDE: usize = 8;
 const RAYS: usize = SIDE * SIDE;
 const GROUPS: usize = RAYS / LANES;
 const WIDTH: usize = Node::WIDTH;
-/// The squares of the directions' lengths for which [`bounds`] hold without scaling, which wants 1/|d| to be 1 at most: that of
+/// The squares of the directions' lengths for which [`bounds`](spherule_kernel::bounds) hold without scaling, which wants 1/|d| to be 1 at most: that of
 /// a camera's rays is, but for its rounding.
 const SQUARES: std::ops::Range<f32> = 0.999..(1_u64 << 40) as f32;
 /// 32u, u = 2⁻²⁴: what a box test may be off by for its terms, twice over.
@@ -40,6 +42,8 @@ struct Lanes([f32; LANES]);
 /// Rays of one origin, and what they have found.
 #[derive(Clone, Debug)]
 pub struct Packet {
+    /// The instructions that they are traced with.
+    level: Level,
     origin: Vec3,
     t_min: f32,
     x: [Lanes; GROUPS],
@@ -51,11 +55,11 @@ pub struct Packet {
     /// The nearest hit so far, or the end of the ray; and its sphere.
     t: [Lanes; GROUPS],
     sphere: [[u32; LANES]; GROUPS],
-    /// Where a sphere must certainly be hit before to be nearer; and 1 where the rung was not asked about the
+    /// Where a sphere must certainly be hit before to be nearer; and a bit where the rung was not asked about the
     /// nearest, so that `t` is where it is hit at most.
     low: [Lanes; GROUPS],
-    is_unasked: [[u32; LANES]; GROUPS],
-    /// Whether directions are of such length that [`bounds`] hold for them as they are.
+    are_unasked: [u32; GROUPS],
+    /// Whether directions are of such length that [`bounds`](spherule_kernel::bounds) hold for them as they are.
     has_bounds: bool,
     /// The largest t of each group.
     end: [f32; GROUPS],
@@ -259,18 +263,13 @@ struct Entry {
     count: u32,
 }
 
-impl Default for Packet {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
 impl Packet {
     /// No rays yet.
     #[must_use]
-    pub fn new() -> Self {
+    pub fn new(instructions: InstructionSet) -> Self {
         let none = [Lanes([0.0; LANES]); GROUPS];
         Self {
+            level: instructions.level().unwrap_or(Level::baseline()),
             origin: Vec3::ZERO,
             t_min: 0.0,
             x: none,
@@ -281,7 +280,7 @@ impl Packet {
             t: none,
             sphere: [[Hit::NONE_SPHERE; LANES]; GROUPS],
             low: none,
-            is_unasked: [[0; LANES]; GROUPS],
+            are_unasked: [0; GROUPS],
             has_bounds: false,
             end: [0.0; GROUPS],
             widening: 0.0,
@@ -301,7 +300,7 @@ impl Packet {
         self.t = [Lanes([first.t_max; LANES]); GROUPS];
         self.sphere = [[Hit::NONE_SPHERE; LANES]; GROUPS];
         self.low = self.t;
-        self.is_unasked = [[0; LANES]; GROUPS];
+        self.are_unasked = [0; GROUPS];
         self.end = [first.t_max; GROUPS];
         self.has_bounds = true;
         let (forward, right, up) = (camera.forward, camera.right, camera.up);
@@ -342,14 +341,29 @@ impl Packet {
         self.end.iter().copied().fold(f32::MIN, f32::max)
     }
 
+    /// The directions of a group.
+    #[inline(always)]
+    fn direction<S: Simd>(&self, simd: S, group: usize) -> Lane3<Single16<S>> {
+        Lane3 {
+            x: Single16::load(simd, &self.x[group].0),
+            y: Single16::load(simd, &self.y[group].0),
+            z: Single16::load(simd, &self.z[group].0),
+        }
+    }
+
     /// Tests `count` of the spheres from `first` on.
     #[inline(always)]
-    fn test<const RUNG: u32>(&mut self, spheres: &[Sphere], first: u32, count: usize) {
+    fn test<S: Simd, const RUNG: u32>(
+        &mut self,
+        simd: S,
+        spheres: &[Sphere],
+        first: u32,
+        count: usize,
+    ) {
         for (index, sphere) in spheres[first as usize..][..count].iter().enumerate() {
             let o = sphere.center() - self.origin;
             let radius = sphere.radius().abs();
-            let (oo, rr) = (o.dot(o), radius * radius);
-            let c = (oo - rr) - candidates::SLACK * (oo + rr);
+            let target = Target::of(Lane3::of(o), radius);
             let off = (o.abs().element_sum() + radius) * SLACK + self.widening;
             let nearest = o.dot(self.frustum.forward.normal) - radius - off;
             // Of a normal's components the sum is two at most.
@@ -360,106 +374,90 @@ impl Packet {
                 if nearest > self.end[group] {
                     continue;
                 }
-                let mut discriminant = Lanes([0.0; LANES]);
-                for lane in 0..LANES {
-                    let b = o.x * self.x[group].0[lane]
-                        + o.y * self.y[group].0[lane]
-                        + o.z * self.z[group].0[lane];
-                    discriminant.0[lane] = b * b - self.a[group].0[lane] * c;
-                }
-                // A number that is none is asked about, too.
-                let mut may_hit = false;
-                for value in discriminant.0 {
-                    may_hit |= (value >= 0.0) | value.is_nan();
-                }
-                if may_hit {
+                let target = Target {
+                    o: Single16::splat3(simd, o),
+                    c: Single16::splat(simd, target.c),
+                    oo: Single16::splat(simd, target.oo),
+                    rr: Single16::splat(simd, target.rr),
+                };
+                let a = Single16::load(simd, &self.a[group].0);
+                let may_hit = target.may_hit(self.direction(simd, group), a);
+                if may_hit.any_true() {
                     let index = first + index as u32;
                     if RUNG == Rung::Robust.to_u32() {
-                        self.test_robust(group, *sphere, index);
+                        self.test_robust(simd, group, *sphere, index);
                     } else if RUNG == Rung::Double.to_u32() {
-                        self.test_double(group, *sphere, index);
+                        self.test_double(simd, group, *sphere, index);
                     } else if RUNG != Rung::Textbook.to_u32() && self.has_bounds {
-                        let open = self.test_bounds(group, *sphere, index);
-                        if open != [0; LANES] {
-                            self.ask::<RUNG>(group, &open, spheres);
-                            self.test_each::<RUNG>(group, *sphere, index, &open);
+                        let open = self.test_bounds(simd, group, *sphere, index);
+                        if open != 0 {
+                            self.ask::<RUNG>(group, open, spheres);
+                            self.test_each::<RUNG>(group, *sphere, index, open);
                         }
                     } else {
-                        let open = lanes(|i| 1 - u32::from(discriminant.0[i] < 0.0));
-                        self.test_each::<RUNG>(group, *sphere, index, &open);
+                        let open = may_hit.to_bitmask() as u32;
+                        self.test_each::<RUNG>(group, *sphere, index, open);
                     }
                 }
             }
         }
     }
 
-    /// Takes the sphere where it is the nearest for certain, and tells (1, else 0) for which rays the rung is to be asked:
-    /// [`bounds`] for 16 rays.
+    /// Takes the sphere where it is the nearest for certain, and tells for which rays the rung is to be asked, a bit each:
+    /// [`bounds`](spherule_kernel::bounds) for 16 rays.
     #[inline(always)]
-    fn test_bounds(&mut self, group: usize, sphere: Sphere, index: u32) -> [u32; LANES] {
-        let o = sphere.center() - self.origin;
-        let r = sphere.radius().abs();
-        let (oo, rr) = (o.dot(o), r * r);
-        let doubt = bounds::doubt(oo, rr);
-        let may_be_behind = (self.t_min >= 0.0) & (oo * bounds::OUTSIDE > rr);
-        let (x, y, z) = (&self.x[group].0, &self.y[group].0, &self.z[group].0);
-        let inverse = &self.inverse[group].0;
-        let b = lanes(|i| o.x * x[i] + o.y * y[i] + o.z * z[i]);
-        let middle = lanes(|i| b[i] * inverse[i]);
-        let foot_x = lanes(|i| o.x - x[i] * middle[i]);
-        let foot_y = lanes(|i| o.y - y[i] * middle[i]);
-        let foot_z = lanes(|i| o.z - z[i] * middle[i]);
-        let q =
-            lanes(|i| rr - (foot_x[i] * foot_x[i] + foot_y[i] * foot_y[i] + foot_z[i] * foot_z[i]));
-        let positive = lanes(|i| if q[i] > 0.0 { q[i] * inverse[i] } else { 0.0 });
-        let root = lanes(|i| positive[i].sqrt());
-        let off = lanes(|i| middle[i].abs() * bounds::OFF + r * bounds::OFF_BY_RADIUS);
-        let low = lanes(|i| middle[i] - root[i] - off[i]);
-        let high = lanes(|i| middle[i] - root[i] + off[i]);
-        let t_min = self.t_min;
-        let (end, nearest) = (self.t[group].0, self.low[group].0);
-        let (spheres, is_unasked) = (self.sphere[group], self.is_unasked[group]);
-        let misses = |i: usize| (q[i] < -doubt) | (may_be_behind & (b[i] < 0.0));
-        let hits = |i: usize| (q[i] > doubt) & (low[i] >= t_min);
-        let is_nearer = lanes(|i| u32::from(hits(i) & (high[i] < nearest[i])));
-        let is_closed = |i: usize| misses(i) | (hits(i) & (low[i] > end[i]));
-        let open = lanes(|i| u32::from(!is_closed(i)) & !is_nearer[i]);
-        let ends = lanes(|i| if is_nearer[i] == 1 { high[i] } else { end[i] });
-        self.low[group] = Lanes(lanes(|i| {
-            if is_nearer[i] == 1 {
-                low[i]
-            } else {
-                nearest[i]
-            }
-        }));
-        self.sphere[group] = lanes(|i| if is_nearer[i] == 1 { index } else { spheres[i] });
-        self.is_unasked[group] = lanes(|i| is_unasked[i] | is_nearer[i]);
-        self.t[group] = Lanes(ends);
-        self.end[group] = largest(&ends);
-        open
+    fn test_bounds<S: Simd>(&mut self, simd: S, group: usize, sphere: Sphere, index: u32) -> u32 {
+        let aim = Aim {
+            direction: self.direction(simd, group),
+            inverse: Single16::load(simd, &self.inverse[group].0),
+            start: Single16::splat(simd, self.t_min),
+            behind: Single16::splat(simd, if self.t_min >= 0.0 { 0.0 } else { f32::MIN }),
+        };
+        let o = Single16::splat3(simd, sphere.center() - self.origin);
+        let (misses, hits, low, high) = aim.bounds(o, Single16::splat(simd, sphere.radius()));
+        let end = Single16::load(simd, &self.t[group].0);
+        let nearest = Single16::load(simd, &self.low[group].0);
+        let is_nearer = hits & high.simd_lt(nearest);
+        let is_closed = misses | (hits & low.simd_gt(end));
+        let end = Single16::select(is_nearer, high, end);
+        end.store(&mut self.t[group].0);
+        Single16::select(is_nearer, low, nearest).store(&mut self.low[group].0);
+        self.put_sphere(simd, group, is_nearer, index);
+        let is_nearer = is_nearer.to_bitmask() as u32;
+        self.are_unasked[group] |= is_nearer;
+        self.end[group] = largest(&self.t[group].0);
+        (!is_closed).to_bitmask() as u32 & !is_nearer
     }
 
-    /// Asks the rung about the nearest spheres of these rays (1 each, else 0), where it was not.
+    /// Notes the sphere for the rays of a mask.
     #[inline(always)]
-    fn ask<const RUNG: u32>(&mut self, group: usize, rays: &[u32; LANES], spheres: &[Sphere]) {
-        for (lane, is_asked) in rays.iter().enumerate() {
-            if is_asked & self.is_unasked[group][lane] == 1 {
-                self.is_unasked[group][lane] = 0;
-                let sphere = spheres[self.sphere[group][lane] as usize];
-                let t = intersect(RUNG, sphere, &self.ray(group, lane, Hit::NONE_T));
-                self.t[group].0[lane] = t;
-                self.low[group].0[lane] = t;
-            }
+    fn put_sphere<S: Simd>(&mut self, simd: S, group: usize, rays: mask32x16<S>, index: u32) {
+        let sphere = &mut self.sphere[group];
+        let before = u32x16::load_array_ref(simd, sphere);
+        rays.select(u32x16::splat(simd, index), before)
+            .store_array(sphere);
+    }
+
+    /// Asks the rung about the nearest spheres of these rays, a bit each, where it was not.
+    #[inline(always)]
+    fn ask<const RUNG: u32>(&mut self, group: usize, rays: u32, spheres: &[Sphere]) {
+        let mut asked = rays & self.are_unasked[group];
+        self.are_unasked[group] &= !asked;
+        while asked != 0 {
+            let lane = asked.trailing_zeros() as usize % LANES;
+            asked &= asked - 1;
+            let sphere = spheres[self.sphere[group][lane] as usize];
+            let t = intersect(RUNG, sphere, &self.ray(group, lane, Hit::NONE_T));
+            self.t[group].0[lane] = t;
+            self.low[group].0[lane] = t;
         }
     }
 
     /// Asks the rung about what it was not.
     #[inline(always)]
     fn finish<const RUNG: u32>(&mut self, spheres: &[Sphere]) {
-        if self.is_unasked != [[0; LANES]; GROUPS] {
-            for group in 0..GROUPS {
-                self.ask::<RUNG>(group, &[1; LANES], spheres);
-            }
+        for group in 0..GROUPS {
+            self.ask::<RUNG>(group, u32::MAX, spheres);
         }
     }
 
@@ -474,19 +472,18 @@ impl Packet {
         Ray::within(self.origin, direction, self.t_min, t_max)
     }
 
-    /// Asks the rung about each of these rays (1, else 0) whether it meets the sphere.
+    /// Asks the rung about each of these rays, a bit each, whether it meets the sphere.
     #[inline(always)]
     fn test_each<const RUNG: u32>(
         &mut self,
         group: usize,
         sphere: Sphere,
         index: u32,
-        rays: &[u32; LANES],
+        mut rays: u32,
     ) {
-        for (lane, is_asked) in rays.iter().enumerate() {
-            if *is_asked == 0 {
-                continue;
-            }
+        while rays != 0 {
+            let lane = rays.trailing_zeros() as usize % LANES;
+            rays &= rays - 1;
             let best = self.t[group].0[lane];
             // As near is of interest, too, if the index is lower.
             let t_max = if best < Hit::NONE_T {
@@ -504,128 +501,72 @@ impl Packet {
         self.end[group] = largest(&self.t[group].0);
     }
 
-    /// The kernel's robust intersection for 16 rays.
+    /// [`robust`] for 16 rays.
     #[inline(always)]
-    fn test_robust(&mut self, group: usize, sphere: Sphere, index: u32) {
-        let o = self.origin - sphere.center();
-        let rr = sphere.radius() * sphere.radius();
-        let c = o.dot(o) - rr;
-        let (x, y, z) = (&self.x[group].0, &self.y[group].0, &self.z[group].0);
-        let (a, inverse) = (&self.a[group].0, &self.inverse[group].0);
-        // Step by step, each for all lanes: so each becomes one instruction.
-        let b = lanes(|i| o.x * x[i] + o.y * y[i] + o.z * z[i]);
-        let along = lanes(|i| b[i] * inverse[i]);
-        let foot_x = lanes(|i| o.x - x[i] * along[i]);
-        let foot_y = lanes(|i| o.y - y[i] * along[i]);
-        let foot_z = lanes(|i| o.z - z[i] * along[i]);
-        let squared =
-            lanes(|i| foot_x[i] * foot_x[i] + foot_y[i] * foot_y[i] + foot_z[i] * foot_z[i]);
-        let discriminant = lanes(|i| rr - squared[i]);
-        let positive = lanes(|i| {
-            if discriminant[i] > 0.0 {
-                discriminant[i]
-            } else {
-                0.0
-            }
-        });
-        let root = lanes(|i| (a[i] * positive[i]).sqrt());
-        let size = lanes(|i| b[i].abs() + root[i]);
-        let quotient = lanes(|i| c / size[i]);
-        let inner = lanes(|i| if size[i] > 0.0 { quotient[i] } else { 0.0 });
-        let meets = lanes(|i| {
-            let meets = (discriminant[i] >= 0.0) & (size[i] <= f32::MAX);
-            if meets { 1.0 } else { 0.0 }
-        });
+    fn test_robust<S: Simd>(&mut self, simd: S, group: usize, sphere: Sphere, index: u32) {
+        let quadratic = robust::Quadratic::of(
+            Single16::splat3(simd, self.origin - sphere.center()),
+            Single16::splat(simd, sphere.radius()),
+            self.direction(simd, group),
+            Single16::load(simd, &self.a[group].0),
+            Single16::load(simd, &self.inverse[group].0),
+        );
+        let (meets, inner) = (quadratic.meets(), quadratic.inner());
         // Where all that meet it do so ahead, and first in the interval, the other root is not asked for.
-        let mut asks_far = false;
-        for i in 0..LANES {
-            asks_far |= (meets[i] > 0.0) & !((b[i] < 0.0) & (inner[i] >= self.t_min));
+        let is_first = inner.simd_ge(Single16::splat(simd, self.t_min));
+        if (meets & !(quadratic.is_ahead() & is_first)).any_true() {
+            let (near, far) = quadratic.roots();
+            self.take(simd, group, index, meets, near, far);
+        } else {
+            self.take(simd, group, index, meets, inner, inner);
         }
-        if !asks_far {
-            self.take(group, index, &meets, &inner, &inner);
-            return;
-        }
-        let outer = lanes(|i| size[i] / a[i]);
-        let near = lanes(|i| if b[i] < 0.0 { inner[i] } else { -outer[i] });
-        let far = lanes(|i| if b[i] < 0.0 { outer[i] } else { -inner[i] });
-        self.take(group, index, &meets, &near, &far);
     }
 
-    /// The kernel's intersection in f64 for 16 rays.
+    /// [`double`] for 16 rays.
     #[inline(always)]
-    fn test_double(&mut self, group: usize, sphere: Sphere, index: u32) {
+    fn test_double<S: Simd>(&mut self, simd: S, group: usize, sphere: Sphere, index: u32) {
         let o = self.origin.as_dvec3() - sphere.center().as_dvec3();
-        let r = f64::from(sphere.radius());
-        let (x, y, z) = (&self.x[group].0, &self.y[group].0, &self.z[group].0);
-        let x = lanes(|i| f64::from(x[i]));
-        let y = lanes(|i| f64::from(y[i]));
-        let z = lanes(|i| f64::from(z[i]));
-        let a = lanes(|i| x[i] * x[i] + y[i] * y[i] + z[i] * z[i]);
-        let kx = lanes(|i| o.y * z[i] - o.z * y[i]);
-        let ky = lanes(|i| o.z * x[i] - o.x * z[i]);
-        let kz = lanes(|i| o.x * y[i] - o.y * x[i]);
-        let squared = lanes(|i| kx[i] * kx[i] + ky[i] * ky[i] + kz[i] * kz[i]);
-        let discriminant = lanes(|i| a[i] * (r * r) - squared[i]);
-        let b = lanes(|i| o.x * x[i] + o.y * y[i] + o.z * z[i]);
-        let c = o.x * o.x + o.y * o.y + o.z * o.z - r * r;
-        let rough = lanes(|i| discriminant[i].sqrt());
-        let newton =
-            lanes(|i| rough[i] + (discriminant[i] - rough[i] * rough[i]) / (rough[i] + rough[i]));
-        let root = lanes(|i| {
-            if discriminant[i] > 0.0 {
-                newton[i]
-            } else {
-                0.0
-            }
-        });
-        let size = lanes(|i| {
-            if b[i] >= 0.0 {
-                b[i] + root[i]
-            } else {
-                root[i] - b[i]
-            }
-        });
-        let rough = lanes(|i| size[i] / a[i]);
-        let outer = lanes(|i| (rough[i] + (size[i] - rough[i] * a[i]) / a[i]) as f32);
-        let rough = lanes(|i| c / size[i]);
-        let newton = lanes(|i| (rough[i] + (c - rough[i] * size[i]) / size[i]) as f32);
-        let inner = lanes(|i| if size[i] > 0.0 { newton[i] } else { 0.0 });
-        let near = lanes(|i| if b[i] >= 0.0 { -outer[i] } else { inner[i] });
-        let far = lanes(|i| if b[i] >= 0.0 { -inner[i] } else { outer[i] });
-        let meets = lanes(|i| {
-            let meets = (discriminant[i] >= 0.0) & (a[i] > 0.0);
-            if meets { 1.0 } else { 0.0 }
-        });
-        self.take(group, index, &meets, &near, &far);
+        let quadratic = double::Quadratic::of(
+            Lane3 {
+                x: Double16::splat(simd, o.x),
+                y: Double16::splat(simd, o.y),
+                z: Double16::splat(simd, o.z),
+            },
+            Double16::splat(simd, sphere.radius().into()),
+            Lane3 {
+                x: Double16::widened(simd, &self.x[group].0),
+                y: Double16::widened(simd, &self.y[group].0),
+                z: Double16::widened(simd, &self.z[group].0),
+            },
+        );
+        let meets = quadratic.meets().narrowed(simd);
+        let (near, far) = quadratic.roots();
+        self.take(simd, group, index, meets, near.rounded(), far.rounded());
     }
 
-    /// Takes the smaller of two roots that is in the interval, where the line meets the sphere (1, else 0), and where
+    /// Takes the smaller of two roots that is in the interval, where the line meets the sphere, and where
     /// it is nearer than what was found, or as near and of lower index.
     #[inline(always)]
-    fn take(
+    fn take<S: Simd>(
         &mut self,
+        simd: S,
         group: usize,
         index: u32,
-        meets: &[f32; LANES],
-        near: &[f32; LANES],
-        far: &[f32; LANES],
+        meets: mask32x16<S>,
+        near: Single16<S>,
+        far: Single16<S>,
     ) {
-        let (best, sphere) = (self.t[group].0, self.sphere[group]);
-        let t_min = self.t_min;
-        let within = |t: f32, best: f32| (t >= t_min) & (t <= best) & (t < Hit::NONE_T);
-        let t = lanes(|i| {
-            if within(near[i], best[i]) {
-                near[i]
-            } else {
-                far[i]
-            }
-        });
-        let nearer = |i: usize| (t[i] < best[i]) | (index < sphere[i]);
-        let is_new = |i: usize| (meets[i] > 0.0) & within(t[i], best[i]) & nearer(i);
-        let nearest = lanes(|i| if is_new(i) { t[i] } else { best[i] });
-        self.sphere[group] = lanes(|i| if is_new(i) { index } else { sphere[i] });
-        self.t[group] = Lanes(nearest);
-        self.end[group] = largest(&nearest);
+        let t_min = Single16::splat(simd, self.t_min);
+        let none = Single16::splat(simd, Hit::NONE_T);
+        let best = Single16::load(simd, &self.t[group].0);
+        let within = |t: Single16<S>| t.simd_ge(t_min) & t.simd_le(best) & t.simd_lt(none);
+        let t = Single16::select(within(near), near, far);
+        let sphere = u32x16::load_array_ref(simd, &self.sphere[group]);
+        let is_lower = u32x16::splat(simd, index).simd_lt(sphere);
+        let is_new = meets & within(t) & (t.simd_lt(best) | is_lower);
+        Single16::select(is_new, t, best).store(&mut self.t[group].0);
+        self.put_sphere(simd, group, is_new, index);
+        self.end[group] = largest(&self.t[group].0);
     }
 }
 
@@ -672,54 +613,24 @@ pub fn trace<const RUNG: u32>(
     tree: Tree<'_>,
     spheres: &[Sphere],
 ) {
-    const TEXTBOOK: u32 = Rung::Textbook.to_u32();
-    const ROBUST: u32 = Rung::Robust.to_u32();
-    const COMPENSATED: u32 = Rung::Compensated.to_u32();
-    const DOUBLE: u32 = Rung::Double.to_u32();
-    let trace = match RUNG {
-        TEXTBOOK => trace_textbook,
-        ROBUST => trace_robust,
-        COMPENSATED => trace_compensated,
-        DOUBLE => trace_double,
-        _ => trace_certified,
-    };
-    trace(packet, launch, frusta, corner, tree, spheres);
+    dispatch!(packet.level, simd => {
+        packet.aim(launch, frusta, corner);
+        trace_on::<_, RUNG>(simd, packet, tree, spheres);
+    });
 }
-
-macro_rules! on_rung {
-    ($name:ident, $rung:ident) => {
-        #[multiversion(targets(
-            "x86_64+avx512f+avx512vl+avx512bw+avx512dq+avx2+fma",
-            "x86_64+avx2+fma",
-            "aarch64+neon"
-        ))]
-        fn $name(
-            packet: &mut Packet,
-            launch: &Launch,
-            frusta: &Frusta,
-            corner: UVec2,
-            tree: Tree<'_>,
-            spheres: &[Sphere],
-        ) {
-            packet.aim(launch, frusta, corner);
-            trace_on::<{ Rung::$rung.to_u32() }>(packet, tree, spheres);
-        }
-    };
-}
-
-on_rung!(trace_textbook, Textbook);
-on_rung!(trace_robust, Robust);
-on_rung!(trace_compensated, Compensated);
-on_rung!(trace_double, Double);
-on_rung!(trace_certified, Certified);
 
 #[inline(always)]
-fn trace_on<const RUNG: u32>(packet: &mut Packet, tree: Tree<'_>, spheres: &[Sphere]) {
+fn trace_on<S: Simd, const RUNG: u32>(
+    simd: S,
+    packet: &mut Packet,
+    tree: Tree<'_>,
+    spheres: &[Sphere],
+) {
     let nodes = tree.nodes();
     if tree.is_none() {
         // Of hits of a rung without a bound nothing is known; none is passed by for being far away.
         packet.widening = f32::MAX;
-        packet.test::<RUNG>(spheres, 0, spheres.len());
+        packet.test::<S, RUNG>(simd, spheres, 0, spheres.len());
         packet.finish::<RUNG>(spheres);
         return;
     }
@@ -748,7 +659,7 @@ fn trace_on<const RUNG: u32>(packet: &mut Packet, tree: Tree<'_>, spheres: &[Sph
         }
         let first = entry.first as usize;
         if entry.count > 0 {
-            packet.test::<RUNG>(spheres, entry.first, entry.count as usize);
+            packet.test::<S, RUNG>(simd, spheres, entry.first, entry.count as usize);
             continue;
         }
         let node = &nodes[first];
@@ -833,6 +744,7 @@ mod tests {
 
     use super::*;
     use crate::accuracy::random::Random;
+    use crate::cpu;
     use crate::scene::tree::grow_still;
 
     const SIZE: UVec2 = UVec2::new(45, 29);
@@ -851,11 +763,15 @@ mod tests {
     }
 
     /// Squares of rays find what each finds alone, with a tree and without.
-    fn finds_what_each_ray_finds<const RUNG: u32>(launch: &Launch, spheres: &[Sphere]) -> usize {
+    fn finds_what_each_ray_finds<const RUNG: u32>(
+        instructions: InstructionSet,
+        launch: &Launch,
+        spheres: &[Sphere],
+    ) -> usize {
         let tree = grow_still(spheres, 1).expect("a tree");
         let sorted = tree.sort(spheres);
         let mut hits = 0;
-        let mut packet = Packet::new();
+        let mut packet = Packet::new(instructions);
         let frusta = Frusta::of(launch);
         for (tree, spheres) in [(tree.nodes.tree(), &sorted[..]), (Tree::NONE, spheres)] {
             for (left, top) in (0..SIZE.y)
@@ -880,6 +796,7 @@ mod tests {
         hits
     }
 
+    /// With each of the instruction sets that this machine has.
     #[test]
     fn squares_find_what_each_ray_finds() {
         let mut random = Random::new(29);
@@ -896,23 +813,32 @@ mod tests {
             world(&mut |r| Sphere::new(Vec3::ONE, r.log_within(0.1, 20.0))),
             world(&mut |r| Sphere::new(Vec3::new(0.0, 0.0, -3e3) + r.vec3(-900.0, 900.0), 40.0)),
         ];
-        for spheres in &worlds {
-            for (eye, target) in [
-                (Vec3::new(0.0, 0.5, 9.0), Vec3::ZERO),
-                (Vec3::new(0.3, 0.1, 0.2), Vec3::NEG_Z),
-            ] {
-                let launch = launch(eye, target);
-                let hits =
-                    finds_what_each_ray_finds::<{ Rung::Textbook.to_u32() }>(&launch, spheres)
-                        + finds_what_each_ray_finds::<{ Rung::Robust.to_u32() }>(&launch, spheres)
-                        + finds_what_each_ray_finds::<{ Rung::Compensated.to_u32() }>(
-                            &launch, spheres,
-                        )
-                        + finds_what_each_ray_finds::<{ Rung::Double.to_u32() }>(&launch, spheres)
-                        + finds_what_each_ray_finds::<{ Rung::Certified.to_u32() }>(
-                            &launch, spheres,
-                        );
-                assert!(hits > 1000, "{hits} hits tell little");
+        let rungs = [
+            finds_what_each_ray_finds::<{ Rung::Textbook.to_u32() }>,
+            finds_what_each_ray_finds::<{ Rung::Robust.to_u32() }>,
+            finds_what_each_ray_finds::<{ Rung::Compensated.to_u32() }>,
+            finds_what_each_ray_finds::<{ Rung::Double.to_u32() }>,
+            finds_what_each_ray_finds::<{ Rung::Certified.to_u32() }>,
+        ];
+        for instructions in InstructionSet::ALL {
+            if !instructions.is_there() {
+                let required = std::env::var(cpu::VARIABLE);
+                assert_ne!(required.as_deref(), Ok(instructions.name()), "is required");
+                println!("SKIPPED: squares with {instructions}, which this machine does not have");
+                continue;
+            }
+            for spheres in &worlds {
+                for (eye, target) in [
+                    (Vec3::new(0.0, 0.5, 9.0), Vec3::ZERO),
+                    (Vec3::new(0.3, 0.1, 0.2), Vec3::NEG_Z),
+                ] {
+                    let launch = launch(eye, target);
+                    let hits: usize = rungs
+                        .iter()
+                        .map(|finds| finds(instructions, &launch, spheres))
+                        .sum();
+                    assert!(hits > 1000, "{instructions}: {hits} hits tell little");
+                }
             }
         }
     }

@@ -2,25 +2,21 @@
 
 use std::arch::x86_64::*;
 
+use fearless_simd::Level;
 use glam::{UVec4, Vec3};
 use spherule_kernel::tree::{Node, Slabs};
 
 use super::single::{Resting, Search};
 use super::walk::Wide;
+use crate::cpu::InstructionSet;
 
 /// The proof that this machine has AVX2 and what comes with it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Avx2(());
 
 impl Avx2 {
-    pub(super) fn detect() -> Option<Self> {
-        let has_all = is_x86_feature_detected!("avx2")
-            && is_x86_feature_detected!("fma")
-            && is_x86_feature_detected!("bmi1")
-            && is_x86_feature_detected!("bmi2")
-            && is_x86_feature_detected!("lzcnt")
-            && is_x86_feature_detected!("popcnt");
-        has_all.then_some(Self(()))
+    pub(super) fn of(instructions: InstructionSet) -> Option<Self> {
+        matches!(instructions.level()?, Level::Avx2(_) | Level::Avx512(_)).then_some(Self(()))
     }
 }
 

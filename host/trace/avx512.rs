@@ -2,30 +2,28 @@
 
 use std::arch::x86_64::*;
 
+use fearless_simd::{Level, x86};
 use glam::{UVec4, Vec3};
 use spherule_kernel::Sphere;
 use spherule_kernel::bounds::{Line, OFF, OFF_BY_RADIUS, OUTSIDE};
-use spherule_kernel::candidates::SLACK;
+use spherule_kernel::candidates::{SLACK, SMALLEST};
 use spherule_kernel::tree::{Node, Slabs};
 
-use super::avx2::Avx2;
 use super::single::{Resting, Search};
 use super::walk::Wide;
+use crate::cpu::InstructionSet;
+pub(super) use crate::lanes::LANES;
 
-/// Spheres side by side.
-pub(super) const LANES: usize = 16;
-
-/// The proof that this machine has AVX-512 and what comes with it.
+/// The proof that this machine has AVX-512 and what comes with it, and that it is to be used.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Avx512(());
+pub(super) struct Avx512(pub(super) x86::Avx512);
 
 impl Avx512 {
-    pub(super) fn detect() -> Option<Self> {
-        let has_all = Avx2::detect().is_some()
-            && is_x86_feature_detected!("avx512f")
-            && is_x86_feature_detected!("avx512dq")
-            && is_x86_feature_detected!("avx512vl");
-        has_all.then_some(Self(()))
+    pub(super) fn of(instructions: InstructionSet) -> Option<Self> {
+        match instructions.level()? {
+            Level::Avx512(token) => Some(Self(token)),
+            _ => None,
+        }
     }
 }
 
@@ -244,7 +242,7 @@ pub(super) fn sift(
     let c = _mm512_fnmadd_ps(splat(SLACK), _mm512_add_ps(oo, rr), _mm512_sub_ps(oo, rr));
     let discriminant = _mm512_fmsub_ps(b, b, _mm512_mul_ps(splat(a), c));
     // A number that is none is asked about, too.
-    let mut found = _mm512_cmp_ps_mask::<_CMP_NLT_UQ>(discriminant, splat(Line::SMALLEST));
+    let mut found = _mm512_cmp_ps_mask::<_CMP_NLT_UQ>(discriminant, splat(SMALLEST));
     if let Some((line, end)) = bounded {
         let r = _mm512_abs_ps(r);
         let middle = _mm512_mul_ps(b, splat(line.inverse));

@@ -82,7 +82,7 @@ impl Levels {
 
 fn is_usable() -> bool {
     #[cfg(target_arch = "x86_64")]
-    return super::avx512::Avx512::detect().is_some();
+    return super::avx512::Avx512::of(crate::cpu::InstructionSet::chosen()).is_some();
     #[cfg(not(target_arch = "x86_64"))]
     return false;
 }

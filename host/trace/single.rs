@@ -9,7 +9,8 @@
 
 use glam::{Mat4, Vec4};
 use spherule_kernel::bounds::Line;
-use spherule_kernel::candidates::SLACK;
+use spherule_kernel::candidates::Target;
+use spherule_kernel::lane::Lane3;
 use spherule_kernel::nearest::{MovingSpheres, Spheres};
 use spherule_kernel::precision::{Precision, Robust, intersect};
 use spherule_kernel::traversal::Traversal;
@@ -23,6 +24,9 @@ use super::levels::Levels;
 use super::stream;
 #[cfg(target_arch = "x86_64")]
 use super::walk::{self, Features};
+#[cfg(target_arch = "x86_64")]
+use crate::cpu::InstructionSet;
+use crate::lanes::Four;
 
 /// Spheres side by side.
 const LANES: usize = 4;
@@ -54,9 +58,9 @@ impl<'a> Single<'a> {
             intersect(RUNG, sphere, ray)
         }
         #[cfg(target_arch = "x86_64")]
-        let features = Features::detect();
+        let features = Features::of(InstructionSet::chosen());
         #[cfg(target_arch = "x86_64")]
-        let levels = Avx512::detect().zip(levels);
+        let levels = Avx512::of(InstructionSet::chosen()).zip(levels);
         #[cfg(not(target_arch = "x86_64"))]
         let _ = levels;
         Self {
@@ -383,18 +387,19 @@ impl Search {
     fn sift(&self, spheres: [Sphere; LANES]) -> u32 {
         let [first, second, third, fourth] = spheres.map(Sphere::to_vec4);
         let rows = Mat4::from_cols(first, second, third, fourth).transpose();
+        let splat = |value| Four(Vec4::splat(value));
         let (origin, direction) = (self.line.origin, self.line.direction);
-        let x = rows.x_axis - Vec4::splat(origin.x);
-        let y = rows.y_axis - Vec4::splat(origin.y);
-        let z = rows.z_axis - Vec4::splat(origin.z);
-        let rr = rows.w_axis * rows.w_axis;
-        let oo = x * x + y * y + z * z;
-        let b = x * Vec4::splat(direction.x)
-            + y * Vec4::splat(direction.y)
-            + z * Vec4::splat(direction.z);
-        let c = (oo - rr) - Vec4::splat(SLACK) * (oo + rr);
-        let discriminant = b * b - Vec4::splat(self.line.a) * c;
-        // A number that is none is asked about, too.
-        !discriminant.cmplt(Vec4::splat(Line::SMALLEST)).bitmask() & 0xf
+        let o = Lane3 {
+            x: Four(rows.x_axis) - splat(origin.x),
+            y: Four(rows.y_axis) - splat(origin.y),
+            z: Four(rows.z_axis) - splat(origin.z),
+        };
+        let d = Lane3 {
+            x: splat(direction.x),
+            y: splat(direction.y),
+            z: splat(direction.z),
+        };
+        let found = Target::of(o, Four(rows.w_axis)).may_hit(d, splat(self.line.a));
+        found.bits()
     }
 }

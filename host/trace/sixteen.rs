@@ -2,12 +2,16 @@
 
 use std::arch::x86_64::*;
 
+use fearless_simd::{SimdFrom, f32x16};
 use glam::Vec3;
 use spherule_kernel::bounds::Line;
+use spherule_kernel::lane::{Lane as _, Lane3};
+use spherule_kernel::precision::robust::Quadratic;
 use spherule_kernel::tree::{Extent, Node, Slabs};
 use spherule_kernel::{Hit, Ray, Rung, Sphere};
 
-use super::avx512::{self, LANES};
+use super::avx512::{self, Avx512};
+use crate::lanes::{LANES, Single16};
 
 /// One value of each ray.
 #[derive(Clone, Copy, Debug)]
@@ -28,7 +32,7 @@ impl Default for Lanes<u32> {
 
 impl Lanes<f32> {
     #[inline]
-    #[target_feature(enable = "avx512f")]
+    #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
     fn load(&self) -> __m512 {
         // SAFETY: sixteen floats on a boundary of 64 bytes.
         unsafe { _mm512_load_ps(self.0.as_ptr()) }
@@ -188,52 +192,43 @@ impl Sixteen {
         avx512::sift(of(&self.origin), of(&self.scaled), a, None, spheres)
     }
 
-    /// Where each of sixteen pairs of a ray and a sphere meets on [`Rung::Robust`], [`Hit::NONE_T`] where it does not: the
-    /// kernel's operations in their order. Both are told by index.
+    /// Where each of sixteen pairs of a ray and a sphere meets on [`Rung::Robust`], [`Hit::NONE_T`] where it does
+    /// not. Both are told by index.
     #[inline]
-    #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
-    pub(super) fn robust(&self, rays: __m512i, spheres: &[Sphere], indices: __m512i) -> __m512 {
-        let of = |lanes: &Lanes<f32>| _mm512_permutexvar_ps(rays, lanes.load());
+    // All that `fearless_simd` has its AVX-512 made of, or none of it becomes part of this.
+    #[target_feature(
+        enable = "adx,aes,avx512bitalg,avx512bw,avx512cd,avx512dq,avx512f,avx512ifma,avx512vbmi,avx512vbmi2,avx512vl,avx512vnni,avx512vpopcntdq,bmi1,bmi2,cmpxchg16b,fma,fxsr,gfni,lzcnt,movbe,pclmulqdq,popcnt,rdrand,rdseed,sha,vaes,vpclmulqdq,xsave,xsavec,xsaveopt,xsaves"
+    )]
+    pub(super) fn robust(
+        &self,
+        Avx512(simd): Avx512,
+        rays: __m512i,
+        spheres: &[Sphere],
+        indices: __m512i,
+    ) -> __m512 {
+        let number = |lanes| Single16(f32x16::simd_from(simd, lanes));
+        let of = |lanes: &Lanes<f32>| number(_mm512_permutexvar_ps(rays, lanes.load()));
         let at = _mm512_slli_epi32::<2>(indices);
-        let [cx, cy, cz, r] = [0, 1, 2, 3].map(|row| {
+        let [cx, cy, cz, radius] = [0, 1, 2, 3].map(|row| {
             let at = _mm512_add_epi32(at, _mm512_set1_epi32(row));
             // SAFETY: four floats a sphere, and the spheres are there.
-            unsafe { _mm512_i32gather_ps::<4>(at, spheres.as_ptr().cast()) }
+            number(unsafe { _mm512_i32gather_ps::<4>(at, spheres.as_ptr().cast()) })
         });
-        let dot = |ax, ay, az, bx, by, bz| {
-            let xy = _mm512_add_ps(_mm512_mul_ps(ax, bx), _mm512_mul_ps(ay, by));
-            _mm512_add_ps(xy, _mm512_mul_ps(az, bz))
-        };
         let [x, y, z] = self.direction.each_ref().map(of);
         let [ox, oy, oz] = self.origin.each_ref().map(of);
-        let ox = _mm512_sub_ps(ox, cx);
-        let oy = _mm512_sub_ps(oy, cy);
-        let oz = _mm512_sub_ps(oz, cz);
-        let a = of(&self.squared);
-        let b = dot(ox, oy, oz, x, y, z);
-        let along = _mm512_mul_ps(b, of(&self.inverse_squared));
-        let foot_x = _mm512_sub_ps(ox, _mm512_mul_ps(x, along));
-        let foot_y = _mm512_sub_ps(oy, _mm512_mul_ps(y, along));
-        let foot_z = _mm512_sub_ps(oz, _mm512_mul_ps(z, along));
-        let rr = _mm512_mul_ps(r, r);
-        let squared = dot(foot_x, foot_y, foot_z, foot_x, foot_y, foot_z);
-        let discriminant = _mm512_sub_ps(rr, squared);
-        let c = _mm512_sub_ps(dot(ox, oy, oz, ox, oy, oz), rr);
-        let root = _mm512_sqrt_ps(_mm512_mul_ps(a, discriminant));
-        let size = _mm512_add_ps(_mm512_abs_ps(b), root);
-        let outer = _mm512_div_ps(size, a);
-        let inner = _mm512_div_ps(c, size);
-        let minus = |x| _mm512_xor_ps(x, _mm512_set1_ps(-0.0));
-        let towards = _mm512_cmp_ps_mask::<_CMP_LT_OQ>(b, _mm512_setzero_ps());
-        let near = _mm512_mask_mov_ps(minus(outer), towards, inner);
-        let far = _mm512_mask_mov_ps(minus(inner), towards, outer);
+        let o = Lane3 {
+            x: ox - cx,
+            y: oy - cy,
+            z: oz - cz,
+        };
+        let d = Lane3 { x, y, z };
+        let (a, inverse) = (of(&self.squared), of(&self.inverse_squared));
+        let quadratic = Quadratic::of(o, radius, d, a, inverse);
+        let (near, far) = quadratic.roots();
         let t_min = of(&self.t_min);
-        let is_near = _mm512_cmp_ps_mask::<_CMP_GE_OQ>(near, t_min);
-        let t = _mm512_mask_mov_ps(far, is_near, near);
-        let hits = _mm512_cmp_ps_mask::<_CMP_GE_OQ>(t, t_min)
-            & _mm512_cmp_ps_mask::<_CMP_LT_OQ>(t, of(&self.end))
-            & _mm512_cmp_ps_mask::<_CMP_GE_OQ>(discriminant, _mm512_setzero_ps())
-            & _mm512_cmp_ps_mask::<_CMP_LE_OQ>(size, _mm512_set1_ps(f32::MAX));
-        _mm512_mask_mov_ps(_mm512_set1_ps(Hit::NONE_T), hits, t)
+        let t = Single16::select(near.simd_ge(t_min), near, far);
+        let hits = t.simd_ge(t_min) & t.simd_lt(of(&self.end)) & quadratic.meets();
+        let none = Single16::splat(simd, Hit::NONE_T);
+        Single16::select(hits, t, none).0.into()
     }
 }

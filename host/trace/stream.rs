@@ -81,7 +81,7 @@ pub(super) fn trace<const ANY: bool>(
         if room.pairs.len() > MOST {
             walk::trace::<ANY, _>(Features::Avx512(wide), single, rays, spheres, put);
         } else if single.rung == Rung::Robust {
-            let nearest = room.ask(levels, spheres);
+            let nearest = room.ask(wide, levels, spheres);
             for index in 0..rays.len() {
                 put(index, nearest.hit(index));
             }
@@ -213,7 +213,7 @@ impl Room {
     /// Finds what rays hit of the spheres in the boxes that they are paired with.
     #[inline]
     #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
-    fn ask(&mut self, levels: &Levels, spheres: &[Sphere]) -> Nearest {
+    fn ask(&mut self, wide: Avx512, levels: &Levels, spheres: &[Sphere]) -> Nearest {
         let mut nearest = Nearest([i64::MAX; LANES]);
         let pairs = &self.pairs[..];
         // As many boxes as there are certainly room for.
@@ -238,14 +238,15 @@ impl Room {
             }
             rays.finish();
             indices.finish();
-            nearest.ask(&self.sixteen, &self.rays, &self.spheres, spheres);
+            // SAFETY: the machine has all of AVX-512 that is asked for, as the proof says.
+            unsafe { nearest.ask(wide, &self.sixteen, &self.rays, &self.spheres, spheres) };
         }
         nearest
     }
 }
 
 #[inline]
-#[target_feature(enable = "avx512f")]
+#[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
 fn lanes() -> __m512i {
     _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15)
 }
@@ -352,8 +353,18 @@ struct Nearest([i64; LANES]);
 impl Nearest {
     /// Asks about pairs of rays and spheres.
     #[inline]
-    #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
-    fn ask(&mut self, sixteen: &Sixteen, rays: &[u32], indices: &[u32], spheres: &[Sphere]) {
+    // As `Sixteen::robust`, which becomes part of this.
+    #[target_feature(
+        enable = "adx,aes,avx512bitalg,avx512bw,avx512cd,avx512dq,avx512f,avx512ifma,avx512vbmi,avx512vbmi2,avx512vl,avx512vnni,avx512vpopcntdq,bmi1,bmi2,cmpxchg16b,fma,fxsr,gfni,lzcnt,movbe,pclmulqdq,popcnt,rdrand,rdseed,sha,vaes,vpclmulqdq,xsave,xsavec,xsaveopt,xsaves"
+    )]
+    fn ask(
+        &mut self,
+        wide: Avx512,
+        sixteen: &Sixteen,
+        rays: &[u32],
+        indices: &[u32],
+        spheres: &[Sphere],
+    ) {
         for (rays, indices) in rays.chunks(LANES).zip(indices.chunks(LANES)) {
             let there = _bzhi_u32(0xffff, rays.len() as u32) as __mmask16;
             // SAFETY: only those that there are, are read.
@@ -363,7 +374,7 @@ impl Nearest {
                     _mm512_maskz_loadu_epi32(there, indices.as_ptr().cast()),
                 )
             };
-            let t = sixteen.robust(some_rays, spheres, some_indices);
+            let t = sixteen.robust(wide, some_rays, spheres, some_indices);
             // Of two zeros one.
             let t = _mm512_add_ps(t, _mm512_setzero_ps());
             let hits = _mm512_mask_cmp_ps_mask::<_CMP_LT_OQ>(there, t, _mm512_set1_ps(Hit::NONE_T));
@@ -413,13 +424,14 @@ mod tests {
     use super::super::walk::tests::{rays, world};
     use super::*;
     use crate::accuracy::random::Random;
+    use crate::cpu::InstructionSet;
     use crate::scene::tree::grow_still;
 
     /// Each ray finds what testing every sphere finds, with others and alone, on every rung: in worlds of one box and of many
     /// levels, and where all spheres are in almost the same place, so that there are too many boxes.
     #[test]
     fn streams_find_what_testing_every_sphere_finds() {
-        if Avx512::detect().is_none() {
+        if Avx512::of(InstructionSet::Avx512).is_none() {
             return;
         }
         let mut random = Random::new(11);

@@ -14,6 +14,7 @@ use spherule_kernel::{Hit, Ray};
 use super::avx2::Avx2;
 use super::avx512::Avx512;
 use super::single::{Resting, Search, Single};
+use crate::cpu::InstructionSet;
 
 const WIDTH: usize = Node::WIDTH;
 /// The most entries of a stack: each node on the way leaves at most seven behind, and a last one is written
@@ -30,10 +31,10 @@ pub(super) enum Features {
 }
 
 impl Features {
-    /// The widest of this machine; `None` if it has not even AVX2.
-    pub(super) fn detect() -> Option<Self> {
-        let avx512 = Avx512::detect().map(Self::Avx512);
-        avx512.or_else(|| Avx2::detect().map(Self::Avx2))
+    /// Of an instruction set; `None` for less than AVX2.
+    pub(super) fn of(instructions: InstructionSet) -> Option<Self> {
+        let avx512 = Avx512::of(instructions).map(Self::Avx512);
+        avx512.or_else(|| Avx2::of(instructions).map(Self::Avx2))
     }
 }
 
@@ -377,8 +378,8 @@ pub(super) mod tests {
 
     fn compare<S: Resting + ?Sized>(tree: Tree<'_>, spheres: &S, rays: &[Ray]) {
         let all = [
-            Avx2::detect().map(Features::Avx2),
-            Avx512::detect().map(Features::Avx512),
+            Avx2::of(InstructionSet::Avx2).map(Features::Avx2),
+            Avx512::of(InstructionSet::Avx512).map(Features::Avx512),
         ];
         for features in all.into_iter().flatten() {
             for rung in Rung::ALL {

@@ -24,13 +24,10 @@
 //! A sphere is behind its ray, too, where o·d < 0 and c = o·o − r² > 32u (o·o + r²): the foot's error is 7u|o| only
 //! where o·d is of the size of its own error, so that any hit would need (8u)² o·o ≥ c.
 
-// On the CPU, std has `f32::sqrt`.
-#[cfg(target_arch = "spirv")]
-use spirv_std::num_traits::Float as _;
-
 use glam::Vec3;
 
-use crate::candidates::{SLACK, power_of_two_under};
+use crate::candidates::{Target, power_of_two_under};
+use crate::lane::{Lane, Lane3};
 use crate::ray::Ray;
 use crate::sphere::Sphere;
 
@@ -42,10 +39,61 @@ pub const OFF_BY_RADIUS: f32 = 1.0 / (1 << 14) as f32;
 pub const OUTSIDE: f32 = 1.0 - 1.0 / (1 << 18) as f32;
 
 /// The doubt e about q, of o·o and r²; and what squares must be above for their errors to be relative.
-#[inline]
+#[inline(always)]
 #[must_use]
-pub fn doubt(oo: f32, rr: f32) -> f32 {
-    oo * (1.0 / (1 << 28) as f32) + (rr * (1.0 / (1 << 6) as f32) + 1e-30)
+pub fn doubt<L: Lane>(oo: L, rr: L) -> L {
+    let of = |value: f32| oo.splat(value);
+    oo * of(1.0 / (1 << 28) as f32) + (rr * of(1.0 / (1 << 6) as f32) + of(1e-30))
+}
+
+/// What is the same of a ray from sphere to sphere.
+#[derive(Clone, Copy, Debug)]
+pub struct Aim<L> {
+    /// The direction, whose largest component is between 1 and 2.
+    pub direction: Lane3<L>,
+    /// One over its squared length.
+    pub inverse: L,
+    /// The start of the ray's interval, as the direction counts it.
+    pub start: L,
+    /// What o·d must be below for a sphere to be behind.
+    pub behind: L,
+}
+
+impl<L: Lane> Aim<L> {
+    /// Whether a sphere is behind its ray for certain, or begins beyond `end`, as the direction counts it: no point of a sphere is nearer than
+    /// o·d/a − r/|d|, |d| is at least one, and what the middle is off by is less than what bounds allow for.
+    #[inline(always)]
+    #[must_use]
+    pub fn is_out_of_reach(&self, target: &Target<L>, radius: L, end: L) -> L::Mask {
+        let r = radius.abs();
+        let b = target.o.dot_rough(self.direction);
+        let middle = b * self.inverse;
+        let off = middle.abs() * r.splat(OFF);
+        let off = r.mul_add_rough(r.splat(OFF_BY_RADIUS), off);
+        let is_behind = b.simd_lt(self.behind) & (target.oo * r.splat(OUTSIDE)).simd_gt(target.rr);
+        (middle - r - off).simd_gt(end) | is_behind
+    }
+
+    /// What is certain of a sphere, of o from the ray's origin to its centre, and of its radius: misses, hits, low and high, as
+    /// [`Bounds`] has them. NaN makes nothing certain.
+    #[inline(always)]
+    #[must_use]
+    pub fn bounds(&self, o: Lane3<L>, radius: L) -> (L::Mask, L::Mask, L, L) {
+        let r = radius.abs();
+        let (oo, rr) = (o.dot(o), r * r);
+        let b = o.dot(self.direction);
+        let middle = b * self.inverse;
+        let foot = o.minus_scaled(self.direction, middle);
+        let q = rr - foot.dot(foot);
+        let doubt = doubt(oo, rr);
+        let enters = middle - (q * self.inverse).sqrt();
+        let off = middle.abs() * oo.splat(OFF) + r * oo.splat(OFF_BY_RADIUS);
+        let (low, high) = (enters - off, enters + off);
+        let is_behind = b.simd_lt(self.behind) & (oo * oo.splat(OUTSIDE)).simd_gt(rr);
+        let misses = q.simd_lt(-doubt) | is_behind;
+        let hits = q.simd_gt(doubt) & low.simd_ge(self.start);
+        (misses, hits, low, high)
+    }
 }
 
 /// A ray, for one sphere after the other.
@@ -91,9 +139,6 @@ impl Bounds {
 }
 
 impl Line {
-    /// What a discriminant may lose where its terms are no normal numbers.
-    pub const SMALLEST: f32 = -1e-36;
-
     /// Of a ray.
     #[inline(always)]
     #[must_use]
@@ -116,18 +161,23 @@ impl Line {
 
     /// Whether any rung may find a hit, by the discriminant of [`candidates`](crate::candidates) and its slack. Where a
     /// number is none, it is to be asked.
-    #[expect(
-        clippy::neg_cmp_op_on_partial_ord,
-        reason = "a number that is none is not smaller"
-    )]
     #[inline]
     #[must_use]
     pub fn may_hit(&self, sphere: Sphere) -> bool {
         let o = sphere.center() - self.origin;
-        let (oo, rr) = (o.dot(o), sphere.radius() * sphere.radius());
-        let b = o.dot(self.direction);
-        let c = (oo - rr) - SLACK * (oo + rr);
-        !(b * b - self.a * c < Self::SMALLEST)
+        Target::of(Lane3::of(o), sphere.radius()).may_hit(Lane3::of(self.direction), self.a)
+    }
+
+    /// What is the same of the ray from sphere to sphere.
+    #[inline(always)]
+    #[must_use]
+    pub fn aim(&self) -> Aim<f32> {
+        Aim {
+            direction: Lane3::of(self.direction),
+            inverse: self.inverse,
+            start: self.start,
+            behind: self.behind,
+        }
     }
 
     /// What is certain of a sphere. Numbers that are none make nothing certain.
@@ -135,19 +185,10 @@ impl Line {
     #[must_use]
     pub fn bounds(&self, sphere: Sphere) -> Bounds {
         let o = sphere.center() - self.origin;
-        let r = sphere.radius().abs();
-        let (oo, rr) = (o.dot(o), r * r);
-        let b = o.dot(self.direction);
-        let middle = b * self.inverse;
-        let foot = o - self.direction * middle;
-        let q = rr - foot.dot(foot);
-        let doubt = doubt(oo, rr);
-        let enters = middle - (q * self.inverse).sqrt();
-        let off = middle.abs() * OFF + r * OFF_BY_RADIUS;
-        let (low, high) = (enters - off, enters + off);
+        let (misses, hits, low, high) = self.aim().bounds(Lane3::of(o), sphere.radius());
         Bounds {
-            misses: (q < -doubt) | ((b < self.behind) & (oo * OUTSIDE > rr)),
-            hits: (q > doubt) & (low >= self.start),
+            misses,
+            hits,
             low,
             high,
         }

@@ -10,6 +10,11 @@
 
 use glam::Vec3;
 
+use crate::lane::{Lane, Lane3};
+
+/// What a discriminant may lose where its terms are no normal numbers.
+pub const SMALLEST: f32 = -1e-36;
+
 /// 64u.
 pub const SLACK: f32 = 1.0 / (1 << 18) as f32;
 
@@ -19,4 +24,40 @@ pub const SLACK: f32 = 1.0 / (1 << 18) as f32;
 pub fn power_of_two_under(vector: Vec3) -> f32 {
     let largest = vector.abs().max_element().max(f32::MIN_POSITIVE);
     f32::from_bits(0x7f00_0000_u32.wrapping_sub(largest.to_bits() & 0x7f80_0000))
+}
+
+/// A sphere that lines from one origin may hit.
+#[derive(Clone, Copy, Debug)]
+pub struct Target<L> {
+    /// From the origin to the sphere's centre.
+    pub o: Lane3<L>,
+    /// o·o − r², less what the discriminant may be off by.
+    pub c: L,
+    /// o·o
+    pub oo: L,
+    /// r²
+    pub rr: L,
+}
+
+impl<L: Lane> Target<L> {
+    /// Of o from the origin to the sphere's centre, and of its radius.
+    #[inline(always)]
+    #[must_use]
+    pub fn of(o: Lane3<L>, radius: L) -> Self {
+        let (oo, rr) = (o.dot_rough(o), radius * radius);
+        Self {
+            o,
+            c: (oo + rr).mul_add_rough(oo.splat(-SLACK), oo - rr),
+            oo,
+            rr,
+        }
+    }
+
+    /// Whether any rung may find that the line along `d`, whose square is `a`, meets the sphere; true for NaN.
+    #[inline(always)]
+    #[must_use]
+    pub fn may_hit(&self, d: Lane3<L>, a: L) -> L::Mask {
+        let b = self.o.dot_rough(d);
+        !b.mul_sub_rough(b, a * self.c).simd_lt(a.splat(SMALLEST))
+    }
 }

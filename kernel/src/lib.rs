@@ -11,6 +11,7 @@
 //! | [`ray`] | [`Ray`]: an origin, a direction, an interval |
 //! | [`sphere`] | [`Sphere`]: a centre and a radius in one 16-byte load |
 //! | [`hit`] | [`Hit`]: how far along the ray, and which sphere |
+//! | [`lane`] | [`lane::Lane`]: the numbers that formulas are written in, one or several side by side |
 //! | [`arithmetic`] | floats whose rounding errors are kept |
 //! | [`precision`] | the ladder: ways to intersect a ray with a sphere |
 //! | [`nearest`] | the nearest hit of a ray among a slice of spheres, and whether there is any |
@@ -69,6 +70,7 @@ pub mod frustum;
 pub mod hit;
 pub mod instructions;
 pub mod integrate;
+pub mod lane;
 pub mod layout;
 pub mod light;
 pub mod material;

@@ -54,7 +54,7 @@ type Trace = fn(
 /// # Errors
 ///
 /// [`OutOfHostMemory`](crate::Error::OutOfHostMemory) if the host has no room for the image,
-/// [`Error::Scene`](crate::Error::Scene) if the launch is not one of a whole image.
+/// [`Error::Scene`] if the launch is not one of a whole image.
 pub fn render(prepared: &Prepared, settings: &Settings, progress: Progress<'_>) -> Result<Sampled> {
     check_path_launch(&prepared.launch)?;
     let begun = Instant::now();

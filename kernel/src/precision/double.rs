@@ -5,12 +5,9 @@
 //! v (a r² + |k||o||d|), and c by a few v (o·o + r²). Each root is rounded to a float at the end.
 //! Vulkan promises little of 64-bit quotients and roots, so that one Newton step follows each.
 
-// On the CPU, std has `f64::sqrt`.
-#[cfg(target_arch = "spirv")]
-use spirv_std::num_traits::Float as _;
-
 use super::{Precision, choose_root};
 use crate::hit::Hit;
+use crate::lane::{Lane, Lane3};
 use crate::ray::Ray;
 use crate::sphere::Sphere;
 
@@ -18,65 +15,96 @@ use crate::sphere::Sphere;
 #[derive(Clone, Copy, Debug)]
 pub struct Double;
 
+/// The quadratic of a line and a sphere, in lanes of 64 bits.
+#[derive(Clone, Copy, Debug)]
+pub struct Quadratic<L> {
+    /// d·d
+    pub a: L,
+    /// o·d, o from the sphere's centre to the origin.
+    pub b: L,
+    /// o·o − r²
+    pub c: L,
+    /// a r² − k·k
+    pub discriminant: L,
+}
+
+impl<L: Lane> Quadratic<L> {
+    /// Of o from the sphere's centre to the line's origin, the radius, and the line's direction.
+    #[inline(always)]
+    #[must_use]
+    pub fn of(o: Lane3<L>, radius: L, d: Lane3<L>) -> Self {
+        let a = d.dot(d);
+        let k = o.cross(d);
+        let radius_squared = radius * radius;
+        Self {
+            a,
+            b: o.dot(d),
+            c: o.dot(o) - radius_squared,
+            discriminant: a * radius_squared - k.dot(k),
+        }
+    }
+
+    /// Whether the line meets the sphere; false for a NaN.
+    #[inline(always)]
+    #[must_use]
+    pub fn meets(&self) -> L::Mask {
+        let zero = self.a.splat(0.0);
+        self.discriminant.simd_ge(zero) & self.a.simd_gt(zero)
+    }
+
+    /// Both roots, the smaller first.
+    #[inline(always)]
+    #[must_use]
+    pub fn roots(&self) -> (L, L) {
+        let zero = self.a.splat(0.0);
+        let root = square_root(self.discriminant);
+        let leaves = self.b.simd_ge(zero);
+        let size = L::choose(leaves, || self.b + root, || root - self.b);
+        let outer = quotient(size, self.a);
+        let inner = L::choose(size.simd_gt(zero), || quotient(self.c, size), || zero);
+        L::choose_pair(leaves, || (-outer, -inner), || (inner, outer))
+    }
+}
+
 impl Precision for Double {
     #[inline]
     fn intersect(sphere: Sphere, ray: &Ray) -> f32 {
         let center = sphere.center();
-        let (ox, oy, oz) = (
-            f64::from(ray.origin.x) - f64::from(center.x),
-            f64::from(ray.origin.y) - f64::from(center.y),
-            f64::from(ray.origin.z) - f64::from(center.z),
-        );
-        let (dx, dy, dz) = (
-            f64::from(ray.direction.x),
-            f64::from(ray.direction.y),
-            f64::from(ray.direction.z),
-        );
-        let r = f64::from(sphere.radius());
-
-        let a = dx * dx + dy * dy + dz * dz;
-        let (kx, ky, kz) = (oy * dz - oz * dy, oz * dx - ox * dz, ox * dy - oy * dx);
-        let discriminant = a * (r * r) - (kx * kx + ky * ky + kz * kz);
-        // False for a NaN in either.
-        let meets = (discriminant >= 0.0) & (a > 0.0);
-        if !meets {
+        let o = Lane3 {
+            x: f64::from(ray.origin.x) - f64::from(center.x),
+            y: f64::from(ray.origin.y) - f64::from(center.y),
+            z: f64::from(ray.origin.z) - f64::from(center.z),
+        };
+        let d = Lane3 {
+            x: f64::from(ray.direction.x),
+            y: f64::from(ray.direction.y),
+            z: f64::from(ray.direction.z),
+        };
+        let quadratic = Quadratic::of(o, f64::from(sphere.radius()), d);
+        if !quadratic.meets() {
             return Hit::NONE_T;
         }
-        let b = ox * dx + oy * dy + oz * dz;
-        let c = ox * ox + oy * oy + oz * oz - r * r;
-        let root = square_root(discriminant);
-        let leaves = b >= 0.0;
-        let size = if leaves { b + root } else { root - b };
-        let outer = quotient(size, a) as f32;
-        let inner = if size > 0.0 {
-            quotient(c, size) as f32
-        } else {
-            0.0
-        };
-        if leaves {
-            choose_root(-outer, -inner, ray)
-        } else {
-            choose_root(inner, outer, ray)
-        }
+        let (near, far) = quadratic.roots();
+        choose_root(near as f32, far as f32, ray)
     }
 }
 
-/// √x for x ≥ 0, with one Newton step.
-#[inline]
+/// √x for x ≥ 0, with one Newton step; 0 for any other x.
+#[inline(always)]
 #[must_use]
-pub fn square_root(x: f64) -> f64 {
-    if x > 0.0 {
+pub fn square_root<L: Lane>(x: L) -> L {
+    let zero = x.splat(0.0);
+    let newton = || {
         let root = x.sqrt();
         root + (x - root * root) / (root + root)
-    } else {
-        0.0
-    }
+    };
+    L::choose(x.simd_gt(zero), newton, || zero)
 }
 
 /// x / y, with one Newton step.
-#[inline]
+#[inline(always)]
 #[must_use]
-pub fn quotient(x: f64, y: f64) -> f64 {
+pub fn quotient<L: Lane>(x: L, y: L) -> L {
     let quotient = x / y;
     quotient + (x - quotient * y) / y
 }

@@ -11,12 +11,9 @@
 //! What is left is c itself: o·o − r² loses its digits where the origin is near the surface, and
 //! o = O − C is rounded. A huge ground sphere and a ray that starts on a surface need more.
 
-// On the CPU, std has `f32::sqrt`.
-#[cfg(target_arch = "spirv")]
-use spirv_std::num_traits::Float as _;
-
 use super::{Precision, choose_root};
 use crate::hit::Hit;
+use crate::lane::{Lane, Lane3};
 use crate::ray::Ray;
 use crate::sphere::Sphere;
 
@@ -24,38 +21,93 @@ use crate::sphere::Sphere;
 #[derive(Clone, Copy, Debug)]
 pub struct Robust;
 
+/// The quadratic of a line and a sphere, and the size of its larger root.
+#[derive(Clone, Copy, Debug)]
+pub struct Quadratic<L> {
+    /// d·d
+    pub a: L,
+    /// o·d, o from the sphere's centre to the origin.
+    pub b: L,
+    /// o·o − r²
+    pub c: L,
+    /// Δ / a
+    pub discriminant: L,
+    /// |q| = |b| + √Δ, a sum of numbers that are not negative.
+    pub size: L,
+}
+
+impl<L: Lane> Quadratic<L> {
+    /// Of o from the sphere's centre to the line's origin, the radius, the line's direction, its square and one over that.
+    #[inline(always)]
+    #[must_use]
+    pub fn of(o: Lane3<L>, radius: L, d: Lane3<L>, a: L, inverse: L) -> Self {
+        let b = o.dot(d);
+        let foot = o.minus_scaled(d, b * inverse);
+        let radius_squared = radius * radius;
+        let discriminant = radius_squared - foot.dot(foot);
+        let c = o.dot(o) - radius_squared;
+        let root = (a * discriminant).sqrt();
+        let size = b.abs() + root;
+        Self {
+            a,
+            b,
+            c,
+            discriminant,
+            size,
+        }
+    }
+
+    /// Whether the line meets the sphere.
+    #[inline(always)]
+    #[must_use]
+    pub fn meets(&self) -> L::Mask {
+        // Infinite only far outside of the domain: |d| above 2⁶⁰ or so.
+        self.discriminant.simd_ge(self.b.splat(0.0)) & self.size.simd_le(self.b.splat(f32::MAX))
+    }
+
+    /// Whether the sphere's centre is ahead of the origin.
+    #[inline(always)]
+    #[must_use]
+    pub fn is_ahead(&self) -> L::Mask {
+        self.b.simd_lt(self.b.splat(0.0))
+    }
+
+    /// The size of the root that is larger by its size.
+    #[inline(always)]
+    #[must_use]
+    pub fn outer(&self) -> L {
+        self.size / self.a
+    }
+
+    /// The other root, if the centre is ahead, else less that: NaN where both roots are zero.
+    #[inline(always)]
+    #[must_use]
+    pub fn inner(&self) -> L {
+        self.c / self.size
+    }
+
+    /// Both roots, the smaller first.
+    #[inline(always)]
+    #[must_use]
+    pub fn roots(&self) -> (L, L) {
+        let (inner, outer) = (self.inner(), self.outer());
+        let is_ahead = self.is_ahead();
+        L::choose_pair(is_ahead, || (inner, outer), || (-outer, -inner))
+    }
+}
+
 impl Precision for Robust {
     #[inline]
     fn intersect(sphere: Sphere, ray: &Ray) -> f32 {
         let o = ray.origin - sphere.center();
         let d = ray.direction;
         let a = d.dot(d);
-        let b = o.dot(d);
         // The same for every sphere that the ray is tested against.
         let inverse = 1.0 / a;
-        let foot = o - d * (b * inverse);
-        let radius_squared = sphere.radius() * sphere.radius();
-        // Δ / a
-        let discriminant = radius_squared - foot.dot(foot);
-        let c = o.dot(o) - radius_squared;
-        let root = (a * discriminant).sqrt();
-        // |q|, a sum of numbers that are not negative.
-        let size = b.abs() + root;
-        let outer = size / a;
-        // No number where both roots are zero: `near` is the other then.
-        let inner = c / size;
-        let (near, far) = if b < 0.0 {
-            (inner, outer)
-        } else {
-            (-outer, -inner)
-        };
+        let quadratic = Quadratic::of(Lane3::of(o), sphere.radius(), Lane3::of(d), a, inverse);
+        let (near, far) = quadratic.roots();
         let t = choose_root(near, far, ray);
-        // Infinite only far outside of the domain: |d| above 2⁶⁰ or so. No branches: the threads of a GPU would
-        // wait for each other.
-        if (discriminant >= 0.0) & (size <= f32::MAX) {
-            t
-        } else {
-            Hit::NONE_T
-        }
+        // No branches: the threads of a GPU would wait for each other.
+        if quadratic.meets() { t } else { Hit::NONE_T }
     }
 }

@@ -21,6 +21,78 @@ pub const CALLS: &[Call] = &[
             )
         },
     ),
+    Call::new("f32 as spherule_kernel::lane::Lane::abs", |s| {
+        seen(<f32 as spherule_kernel::lane::Lane>::abs(s.draw()))
+    }),
+    Call::new("f32 as spherule_kernel::lane::Lane::simd_ge", |s| {
+        seen(<f32 as spherule_kernel::lane::Lane>::simd_ge(
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("f32 as spherule_kernel::lane::Lane::simd_gt", |s| {
+        seen(<f32 as spherule_kernel::lane::Lane>::simd_gt(
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("f32 as spherule_kernel::lane::Lane::simd_le", |s| {
+        seen(<f32 as spherule_kernel::lane::Lane>::simd_le(
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("f32 as spherule_kernel::lane::Lane::simd_lt", |s| {
+        seen(<f32 as spherule_kernel::lane::Lane>::simd_lt(
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("f32 as spherule_kernel::lane::Lane::splat", |s| {
+        seen(<f32 as spherule_kernel::lane::Lane>::splat(
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("f32 as spherule_kernel::lane::Lane::sqrt", |s| {
+        seen(<f32 as spherule_kernel::lane::Lane>::sqrt(s.draw()))
+    }),
+    Call::new("f64 as spherule_kernel::lane::Lane::abs", |s| {
+        seen(<f64 as spherule_kernel::lane::Lane>::abs(s.draw()))
+    }),
+    Call::new("f64 as spherule_kernel::lane::Lane::simd_ge", |s| {
+        seen(<f64 as spherule_kernel::lane::Lane>::simd_ge(
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("f64 as spherule_kernel::lane::Lane::simd_gt", |s| {
+        seen(<f64 as spherule_kernel::lane::Lane>::simd_gt(
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("f64 as spherule_kernel::lane::Lane::simd_le", |s| {
+        seen(<f64 as spherule_kernel::lane::Lane>::simd_le(
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("f64 as spherule_kernel::lane::Lane::simd_lt", |s| {
+        seen(<f64 as spherule_kernel::lane::Lane>::simd_lt(
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("f64 as spherule_kernel::lane::Lane::splat", |s| {
+        seen(<f64 as spherule_kernel::lane::Lane>::splat(
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("f64 as spherule_kernel::lane::Lane::sqrt", |s| {
+        seen(<f64 as spherule_kernel::lane::Lane>::sqrt(s.draw()))
+    }),
     Call::new("spherule::accuracy::ask::fresnel", |s| {
         seen(spherule::accuracy::ask::fresnel(
             &spherule::Device::Cpu,
@@ -406,6 +478,24 @@ pub const CALLS: &[Call] = &[
             &s.draw(),
             s.draw(),
         ))
+    }),
+    Call::new("spherule::cpu::InstructionSet as Display", |s| {
+        seen(s.draw::<spherule::cpu::InstructionSet>().to_string())
+    }),
+    Call::new("spherule::cpu::InstructionSet::chosen", |_| {
+        seen(spherule::cpu::InstructionSet::chosen())
+    }),
+    Call::new("spherule::cpu::InstructionSet::is_there", |s| {
+        seen(spherule::cpu::InstructionSet::is_there(s.draw()))
+    }),
+    Call::new("spherule::cpu::InstructionSet::name", |s| {
+        seen(spherule::cpu::InstructionSet::name(s.draw()))
+    }),
+    Call::new("spherule::cpu::InstructionSet::wanted", |_| {
+        seen(spherule::cpu::InstructionSet::wanted())
+    }),
+    Call::new("spherule::cpu::InstructionSet::widest", |_| {
+        seen(spherule::cpu::InstructionSet::widest())
     }),
     Call::new("spherule::device::Device::backend", |_| {
         seen(spherule::device::Device::backend(&spherule::Device::Cpu))
@@ -1284,11 +1374,29 @@ pub const CALLS: &[Call] = &[
     Call::new("spherule_kernel::arithmetic::strict::sub", |s| {
         seen(spherule_kernel::arithmetic::strict::sub(s.draw(), s.draw()))
     }),
+    Call::new("spherule_kernel::bounds::Aim::bounds", |s| {
+        seen(spherule_kernel::bounds::Aim::<f32>::bounds(
+            &s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::bounds::Aim::is_out_of_reach", |s| {
+        seen(spherule_kernel::bounds::Aim::<f32>::is_out_of_reach(
+            &s.draw(),
+            &s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
     Call::new("spherule_kernel::bounds::Bounds::is_open", |s| {
         seen(spherule_kernel::bounds::Bounds::is_open(
             &s.draw(),
             s.draw(),
         ))
+    }),
+    Call::new("spherule_kernel::bounds::Line::aim", |s| {
+        seen(spherule_kernel::bounds::Line::aim(&s.draw()))
     }),
     Call::new("spherule_kernel::bounds::Line::bounds", |s| {
         seen(spherule_kernel::bounds::Line::bounds(&s.draw(), s.draw()))
@@ -1300,7 +1408,7 @@ pub const CALLS: &[Call] = &[
         seen(spherule_kernel::bounds::Line::of(&s.draw()))
     }),
     Call::new("spherule_kernel::bounds::doubt", |s| {
-        seen(spherule_kernel::bounds::doubt(s.draw(), s.draw()))
+        seen(spherule_kernel::bounds::doubt::<f32>(s.draw(), s.draw()))
     }),
     Call::new("spherule_kernel::camera::Camera::film", |s| {
         seen(spherule_kernel::camera::Camera::film(s.draw(), s.draw()))
@@ -1337,6 +1445,19 @@ pub const CALLS: &[Call] = &[
     }),
     Call::new("spherule_kernel::canary::sing_wide", |s| {
         seen(spherule_kernel::canary::sing_wide(s.draw()))
+    }),
+    Call::new("spherule_kernel::candidates::Target::may_hit", |s| {
+        seen(spherule_kernel::candidates::Target::<f32>::may_hit(
+            &s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::candidates::Target::of", |s| {
+        seen(spherule_kernel::candidates::Target::<f32>::of(
+            s.draw(),
+            s.draw(),
+        ))
     }),
     Call::new("spherule_kernel::candidates::power_of_two_under", |s| {
         seen(spherule_kernel::candidates::power_of_two_under(s.draw()))
@@ -1570,6 +1691,31 @@ pub const CALLS: &[Call] = &[
             s.draw(),
             s.draw(),
         ))
+    }),
+    Call::new("spherule_kernel::lane::Lane3::cross", |s| {
+        seen(spherule_kernel::lane::Lane3::<f32>::cross(
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::lane::Lane3::dot", |s| {
+        seen(spherule_kernel::lane::Lane3::<f32>::dot(s.draw(), s.draw()))
+    }),
+    Call::new("spherule_kernel::lane::Lane3::dot_rough", |s| {
+        seen(spherule_kernel::lane::Lane3::<f32>::dot_rough(
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::lane::Lane3::minus_scaled", |s| {
+        seen(spherule_kernel::lane::Lane3::<f32>::minus_scaled(
+            s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::lane::Lane3::of", |s| {
+        seen(spherule_kernel::lane::Lane3::<f32>::of(s.draw()))
     }),
     Call::new("spherule_kernel::layout::write", |s| {
         seen(spherule_kernel::layout::write(&mut s.many()[..]))
@@ -1809,14 +1955,39 @@ pub const CALLS: &[Call] = &[
             seen(<spherule_kernel::precision::double::Double as spherule_kernel::precision::Precision>::intersect(s.draw(), &s.draw()))
         },
     ),
+    Call::new(
+        "spherule_kernel::precision::double::Quadratic::meets",
+        |s| {
+            seen(spherule_kernel::precision::double::Quadratic::<f32>::meets(
+                &s.draw(),
+            ))
+        },
+    ),
+    Call::new("spherule_kernel::precision::double::Quadratic::of", |s| {
+        seen(spherule_kernel::precision::double::Quadratic::<f32>::of(
+            s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new(
+        "spherule_kernel::precision::double::Quadratic::roots",
+        |s| {
+            seen(spherule_kernel::precision::double::Quadratic::<f32>::roots(
+                &s.draw(),
+            ))
+        },
+    ),
     Call::new("spherule_kernel::precision::double::quotient", |s| {
-        seen(spherule_kernel::precision::double::quotient(
+        seen(spherule_kernel::precision::double::quotient::<f32>(
             s.draw(),
             s.draw(),
         ))
     }),
     Call::new("spherule_kernel::precision::double::square_root", |s| {
-        seen(spherule_kernel::precision::double::square_root(s.draw()))
+        seen(spherule_kernel::precision::double::square_root::<f32>(
+            s.draw(),
+        ))
     }),
     Call::new("spherule_kernel::precision::intersect", |s| {
         seen(spherule_kernel::precision::intersect(
@@ -1825,6 +1996,51 @@ pub const CALLS: &[Call] = &[
             &s.draw(),
         ))
     }),
+    Call::new(
+        "spherule_kernel::precision::robust::Quadratic::inner",
+        |s| {
+            seen(spherule_kernel::precision::robust::Quadratic::<f32>::inner(
+                &s.draw(),
+            ))
+        },
+    ),
+    Call::new(
+        "spherule_kernel::precision::robust::Quadratic::is_ahead",
+        |s| seen(spherule_kernel::precision::robust::Quadratic::<f32>::is_ahead(&s.draw())),
+    ),
+    Call::new(
+        "spherule_kernel::precision::robust::Quadratic::meets",
+        |s| {
+            seen(spherule_kernel::precision::robust::Quadratic::<f32>::meets(
+                &s.draw(),
+            ))
+        },
+    ),
+    Call::new("spherule_kernel::precision::robust::Quadratic::of", |s| {
+        seen(spherule_kernel::precision::robust::Quadratic::<f32>::of(
+            s.draw(),
+            s.draw(),
+            s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new(
+        "spherule_kernel::precision::robust::Quadratic::outer",
+        |s| {
+            seen(spherule_kernel::precision::robust::Quadratic::<f32>::outer(
+                &s.draw(),
+            ))
+        },
+    ),
+    Call::new(
+        "spherule_kernel::precision::robust::Quadratic::roots",
+        |s| {
+            seen(spherule_kernel::precision::robust::Quadratic::<f32>::roots(
+                &s.draw(),
+            ))
+        },
+    ),
     Call::new(
         "spherule_kernel::precision::robust::Robust as spherule_kernel::precision::Precision::intersect",
         |s| {
@@ -2300,6 +2516,16 @@ impl Odd for spherule::bench::scenes::Source {
     }
 }
 
+impl Odd for spherule::cpu::InstructionSet {
+    fn odd(s: &mut Source) -> Self {
+        match s.below(3) {
+            0 => spherule::cpu::InstructionSet::Plain,
+            1 => spherule::cpu::InstructionSet::Avx2,
+            _ => spherule::cpu::InstructionSet::Avx512,
+        }
+    }
+}
+
 impl Odd for spherule::device::adapter::DeviceChoice {
     fn odd(s: &mut Source) -> Self {
         match s.below(4) {
@@ -2586,6 +2812,17 @@ impl Odd for spherule_kernel::arithmetic::double_single::DoubleSingle {
     }
 }
 
+impl Odd for spherule_kernel::bounds::Aim<f32> {
+    fn odd(s: &mut Source) -> Self {
+        spherule_kernel::bounds::Aim::<f32> {
+            direction: Odd::odd(s),
+            inverse: Odd::odd(s),
+            start: Odd::odd(s),
+            behind: Odd::odd(s),
+        }
+    }
+}
+
 impl Odd for spherule_kernel::bounds::Bounds {
     fn odd(s: &mut Source) -> Self {
         spherule_kernel::bounds::Bounds {
@@ -2616,6 +2853,17 @@ impl Odd for spherule_kernel::canary::Operands {
         spherule_kernel::canary::Operands {
             a: Odd::odd(s),
             b: Odd::odd(s),
+        }
+    }
+}
+
+impl Odd for spherule_kernel::candidates::Target<f32> {
+    fn odd(s: &mut Source) -> Self {
+        spherule_kernel::candidates::Target::<f32> {
+            o: Odd::odd(s),
+            c: Odd::odd(s),
+            oo: Odd::odd(s),
+            rr: Odd::odd(s),
         }
     }
 }
@@ -2684,6 +2932,16 @@ impl Odd for spherule_kernel::hit::Hit {
     }
 }
 
+impl Odd for spherule_kernel::lane::Lane3<f32> {
+    fn odd(s: &mut Source) -> Self {
+        spherule_kernel::lane::Lane3::<f32> {
+            x: Odd::odd(s),
+            y: Odd::odd(s),
+            z: Odd::odd(s),
+        }
+    }
+}
+
 impl Odd for spherule_kernel::light::Light {
     fn odd(s: &mut Source) -> Self {
         spherule_kernel::light::Light {
@@ -2742,6 +3000,29 @@ impl Odd for spherule_kernel::precision::compensated::Quadratic {
             k_squared: Odd::odd(s),
             length_scale: Odd::odd(s),
             direction_scale: Odd::odd(s),
+        }
+    }
+}
+
+impl Odd for spherule_kernel::precision::double::Quadratic<f32> {
+    fn odd(s: &mut Source) -> Self {
+        spherule_kernel::precision::double::Quadratic::<f32> {
+            a: Odd::odd(s),
+            b: Odd::odd(s),
+            c: Odd::odd(s),
+            discriminant: Odd::odd(s),
+        }
+    }
+}
+
+impl Odd for spherule_kernel::precision::robust::Quadratic<f32> {
+    fn odd(s: &mut Source) -> Self {
+        spherule_kernel::precision::robust::Quadratic::<f32> {
+            a: Odd::odd(s),
+            b: Odd::odd(s),
+            c: Odd::odd(s),
+            discriminant: Odd::odd(s),
+            size: Odd::odd(s),
         }
     }
 }

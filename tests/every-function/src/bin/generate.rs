@@ -42,10 +42,25 @@ const LEFT_OUT: &[(&str, &str)] = &[
         "takes the GPU from the calls that follow: tests/gpu_errors.rs",
     ),
     (
+        "spherule_kernel::lane::Lane::select",
+        "takes a mask: host/lanes.rs",
+    ),
+    (
+        "spherule_kernel::lane::Lane::choose",
+        "takes a mask: host/lanes.rs",
+    ),
+    (
+        "spherule_kernel::lane::Lane::choose_pair",
+        "takes a mask: host/lanes.rs",
+    ),
+    (
         "spherule::device::gpu::Gpu::launch",
         "runs for as long as a kernel says: tests/gpu_errors.rs",
     ),
 ];
+
+/// What generic types and functions are called with, unless [`WRITTEN`] says.
+const NUMBER: &str = "f32";
 
 /// Whole calls, where a generic argument has to be chosen, or arguments have to fit or borrow one another.
 const WRITTEN: &[(&str, &[&str])] = &[
@@ -296,11 +311,14 @@ impl<'a> Generator<'a> {
                     self.module(krate, *id, &own);
                 }
             }
-            ItemEnum::Function(_) => {
-                self.functions
-                    .push((own_path.clone(), own_path, krate, item, None));
+            ItemEnum::Function(it) => {
+                let path = own_path.clone() + turbofish(&it.generics);
+                self.functions.push((own_path, path, krate, item, None));
             }
-            ItemEnum::Struct(it) => self.of_type(krate, item, own_path, &it.impls),
+            ItemEnum::Struct(it) => {
+                let own_path = own_path + turbofish(&it.generics);
+                self.of_type(krate, item, own_path, &it.impls);
+            }
             ItemEnum::Enum(it) => self.of_type(krate, item, own_path, &it.impls),
             ItemEnum::Union(it) => self.of_type(krate, item, own_path, &it.impls),
             ItemEnum::Trait(_) => self.traits.push((own_path, krate, item)),
@@ -587,6 +605,8 @@ impl<'a> Generator<'a> {
                 needed.insert(definition(krate, path.id));
                 Ok(())
             }
+            // Chosen: a number, or what the call says.
+            Type::Generic(_) => Ok(()),
             _ => Err(format!("nothing is known to make {ty:?}").into()),
         }
     }
@@ -669,7 +689,12 @@ impl<'a> Generator<'a> {
                 else {
                     continue;
                 };
-                if function.header.is_unsafe {
+                if function.header.is_unsafe
+                    || self.is_in(
+                        LEFT_OUT.iter().map(|(name, _)| *name),
+                        &format!("{path}::{name}"),
+                    )
+                {
                     continue;
                 }
                 let mut function = function.clone();
@@ -697,6 +722,7 @@ impl<'a> Generator<'a> {
     fn spell(&self, krate: &Crate, ty: &Type) -> Result<String> {
         Ok(match ty {
             Type::Primitive(name) => name.clone(),
+            Type::Generic(_) => NUMBER.into(),
             Type::Slice(inner) => format!("[{}]", self.spell(krate, inner)?),
             Type::Tuple(types) => {
                 let types: Result<Vec<_>> = types.iter().map(|ty| self.spell(krate, ty)).collect();
@@ -808,6 +834,18 @@ impl<'a> Generator<'a> {
             needed,
         ))
     }
+}
+
+/// The number for what is generic over lanes.
+fn turbofish(generics: &Generics) -> &'static str {
+    use rustdoc_types::GenericParamDefKind;
+    let is_lane = |kind: &GenericParamDefKind| matches!(kind, GenericParamDefKind::Type { .. });
+    let has_lanes = generics
+        .params
+        .iter()
+        .any(|param| param.name == "L" && is_lane(&param.kind));
+    // As [`NUMBER`].
+    if has_lanes { "::<f32>" } else { "" }
 }
 
 fn krate_name(krate: &Crate) -> String {

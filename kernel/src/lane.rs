@@ -1,0 +1,203 @@
+//! [`Lane`]: the numbers that formulas are written in. Runs on the GPU and on the CPU.
+//!
+//! A formula over `L: Lane` is one text for all processors: `f32` and `f64` on the GPU and for single rays, vectors of
+//! either in the CPU's packets, which the host implements the trait for. Each operation is rounded as IEEE 754 says, and
+//! none is fused with another, so that a lane of a vector has the very bits of a single number; but for
+//! [`Lane::mul_add_rough`], which is for bounds.
+
+use core::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
+
+use glam::Vec3;
+
+/// A number, or several side by side.
+pub trait Lane:
+    Copy
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+{
+    /// What a comparison gives: a `bool` for each number.
+    type Mask: Copy
+        + BitAnd<Output = Self::Mask>
+        + BitOr<Output = Self::Mask>
+        + Not<Output = Self::Mask>;
+
+    /// The same number in each lane, as many as `self` has.
+    fn splat(self, value: f32) -> Self;
+    /// The absolute value.
+    fn abs(self) -> Self;
+    /// The square root; NaN below zero.
+    fn sqrt(self) -> Self;
+    /// `self < other`; false for NaN, as in the three below.
+    fn simd_lt(self, other: Self) -> Self::Mask;
+    /// `self ≤ other`.
+    fn simd_le(self, other: Self) -> Self::Mask;
+    /// `self > other`.
+    fn simd_gt(self, other: Self) -> Self::Mask;
+    /// `self ≥ other`.
+    fn simd_ge(self, other: Self) -> Self::Mask;
+    /// `self · factor + term`, rounded once or twice, whichever is faster: for bounds that hold either way.
+    #[inline(always)]
+    fn mul_add_rough(self, factor: Self, term: Self) -> Self {
+        self * factor + term
+    }
+    /// `self · factor − term`, as [`Lane::mul_add_rough`].
+    #[inline(always)]
+    fn mul_sub_rough(self, factor: Self, term: Self) -> Self {
+        self * factor - term
+    }
+    /// `yes` where the mask is true, else `no`.
+    fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
+    /// As [`Lane::select`], of what single numbers compute only where it is asked for: a processor foretells most branches.
+    #[inline(always)]
+    fn choose(mask: Self::Mask, yes: impl FnOnce() -> Self, no: impl FnOnce() -> Self) -> Self {
+        Self::select(mask, yes(), no())
+    }
+    /// As [`Lane::choose`], of two.
+    #[inline(always)]
+    fn choose_pair(
+        mask: Self::Mask,
+        yes: impl FnOnce() -> (Self, Self),
+        no: impl FnOnce() -> (Self, Self),
+    ) -> (Self, Self) {
+        let (yes, no) = (yes(), no());
+        (
+            Self::select(mask, yes.0, no.0),
+            Self::select(mask, yes.1, no.1),
+        )
+    }
+}
+
+macro_rules! scalar {
+    ($float:ty) => {
+        impl Lane for $float {
+            type Mask = bool;
+
+            #[inline(always)]
+            fn splat(self, value: f32) -> Self {
+                value.into()
+            }
+
+            #[inline(always)]
+            fn abs(self) -> Self {
+                <$float>::abs(self)
+            }
+
+            #[inline(always)]
+            fn sqrt(self) -> Self {
+                #[cfg(target_arch = "spirv")]
+                return spirv_std::num_traits::Float::sqrt(self);
+                #[cfg(not(target_arch = "spirv"))]
+                <$float>::sqrt(self)
+            }
+
+            #[inline(always)]
+            fn simd_lt(self, other: Self) -> bool {
+                self < other
+            }
+
+            #[inline(always)]
+            fn simd_le(self, other: Self) -> bool {
+                self <= other
+            }
+
+            #[inline(always)]
+            fn simd_gt(self, other: Self) -> bool {
+                self > other
+            }
+
+            #[inline(always)]
+            fn simd_ge(self, other: Self) -> bool {
+                self >= other
+            }
+
+            #[inline(always)]
+            fn select(mask: bool, yes: Self, no: Self) -> Self {
+                if mask { yes } else { no }
+            }
+
+            #[inline(always)]
+            fn choose(mask: bool, yes: impl FnOnce() -> Self, no: impl FnOnce() -> Self) -> Self {
+                if mask { yes() } else { no() }
+            }
+
+            #[inline(always)]
+            fn choose_pair(
+                mask: bool,
+                yes: impl FnOnce() -> (Self, Self),
+                no: impl FnOnce() -> (Self, Self),
+            ) -> (Self, Self) {
+                if mask { yes() } else { no() }
+            }
+        }
+    };
+}
+
+scalar!(f32);
+#[cfg(any(not(target_arch = "spirv"), feature = "f64"))]
+scalar!(f64);
+
+/// Three coordinates in lanes.
+#[derive(Clone, Copy, Debug)]
+pub struct Lane3<L> {
+    /// Along the first axis.
+    pub x: L,
+    /// Along the second axis.
+    pub y: L,
+    /// Along the third axis.
+    pub z: L,
+}
+
+impl<L: Lane> Lane3<L> {
+    /// The dot product, summed in the order of the axes.
+    #[inline(always)]
+    #[must_use]
+    pub fn dot(self, other: Self) -> L {
+        self.x * other.x + self.y * other.y + self.z * other.z
+    }
+
+    /// The dot product by [`Lane::mul_add_rough`].
+    #[inline(always)]
+    #[must_use]
+    pub fn dot_rough(self, other: Self) -> L {
+        let yz = self.y.mul_add_rough(other.y, self.z * other.z);
+        self.x.mul_add_rough(other.x, yz)
+    }
+
+    /// The cross product.
+    #[inline(always)]
+    #[must_use]
+    pub fn cross(self, other: Self) -> Self {
+        Self {
+            x: self.y * other.z - self.z * other.y,
+            y: self.z * other.x - self.x * other.z,
+            z: self.x * other.y - self.y * other.x,
+        }
+    }
+
+    /// `self − other · factor`.
+    #[inline(always)]
+    #[must_use]
+    pub fn minus_scaled(self, other: Self, factor: L) -> Self {
+        Self {
+            x: self.x - other.x * factor,
+            y: self.y - other.y * factor,
+            z: self.z - other.z * factor,
+        }
+    }
+}
+
+impl Lane3<f32> {
+    /// Of a vector.
+    #[inline(always)]
+    #[must_use]
+    pub fn of(vector: Vec3) -> Self {
+        Self {
+            x: vector.x,
+            y: vector.y,
+            z: vector.z,
+        }
+    }
+}
