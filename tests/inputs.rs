@@ -1,10 +1,13 @@
 //! Inputs of unknown origin, through the command line: refused with exit code 2 and at once, or
 //! drawn; and nothing of them reaches the terminal as anything but text.
 
+use std::io::Write as _;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
 use assert_cmd::Command;
+use flate2::Compression;
+use flate2::write::GzEncoder;
 use predicates::str::contains;
 
 fn spherule() -> Command {
@@ -84,4 +87,72 @@ fn many_atoms_in_one_place_are_drawn() {
     render(&one, &single).assert().success();
     let [many, single] = [many, single].map(|path| std::fs::read(path).expect("a picture"));
     assert!(many == single);
+}
+
+fn compressed(bytes: &[u8]) -> Vec<u8> {
+    let mut encoder = GzEncoder::new(Vec::new(), Compression::default());
+    encoder.write_all(bytes).expect("memory");
+    encoder.finish().expect("memory")
+}
+
+/// Compressed files are read as what they hold, by themselves, in two members, or named by a scene.
+#[test]
+fn compressed_files_are_read_as_what_they_hold() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| folder.path().join(name);
+    let picture = |input: &Path| {
+        render(input, &at("o.png")).assert().success();
+        std::fs::read(at("o.png")).expect("a picture")
+    };
+    let scene = "[particles]\nfile = '1crn.ent.gz'\n";
+    std::fs::write(at("s.toml.gz"), compressed(scene.as_bytes())).expect("a file");
+    for (from, to) in [("c60.xyz", "c60.extxyz.gz"), ("1crn.pdb", "1crn.ent.gz")] {
+        let from = Path::new("scenes").join(from);
+        let text = std::fs::read(&from).expect("a molecule");
+        std::fs::write(at(to), compressed(&text)).expect("a file");
+        assert!(picture(&at(to)) == picture(&from), "{to}");
+        let (first, second) = text.split_at(text.len() / 2);
+        let members = [compressed(first), compressed(second)].concat();
+        std::fs::write(at(to), members).expect("a file");
+        assert!(picture(&at(to)) == picture(&from), "{to} of two members");
+    }
+    assert!(picture(&at("s.toml.gz")) == picture(Path::new("scenes/1crn.pdb")));
+    // The picture is named after what is in the file.
+    spherule()
+        .current_dir(folder.path())
+        .args([
+            "render",
+            "c60.extxyz.gz",
+            "--device",
+            "cpu",
+            "--size",
+            "8x8",
+        ])
+        .assert()
+        .success();
+    assert!(at("c60.png").is_file());
+}
+
+#[test]
+fn compressed_files_that_are_wrong_are_refused() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (input, output) = (folder.path().join("a.xyz.gz"), folder.path().join("o.png"));
+    let whole = compressed(&std::fs::read("scenes/c60.xyz").expect("a molecule"));
+    let mut wrong = whole.clone();
+    wrong[whole.len() / 2] ^= 0x55;
+    for (bytes, says) in [
+        (&whole[..whole.len() / 2], "ends too early"),
+        (&whole[..2], "ends too early"),
+        (&wrong[..], "compressed"),
+        (&compressed(&compressed(b"1\n\nC 0 0 0\n"))[..], "UTF-8"),
+        (&compressed(b"1\n\nC 0 0\n")[..], "a.xyz.gz:3:"),
+        (&compressed(b"")[..], "number of its atoms"),
+    ] {
+        std::fs::write(&input, bytes).expect("a file");
+        render(&input, &output)
+            .assert()
+            .code(2)
+            .stderr(contains(says));
+        assert!(!output.exists());
+    }
 }

@@ -9,7 +9,7 @@ use spherule_kernel::{Material, Sphere};
 use crate::accuracy::random::Random;
 use crate::error::{Result, SceneError, nearest};
 use crate::memory;
-use crate::scene::{Scene, View, World, toml_file};
+use crate::scene::{Scene, View, World, formats, toml_file};
 
 /// What a sphere takes while the tree over it is built, by the largest resident set of `bench --scene R10M`.
 const BYTES_PER_SPHERE: u64 = 300;
@@ -205,9 +205,9 @@ impl Source {
             "",
             message,
             format!(
-                "{likely}give one of {}, R and another number of spheres such as R300k, or a scene file (.toml, .pdb, .ent \
-                 or .xyz)",
-                names.join(", ")
+                "{likely}give one of {}, R and another number of spheres such as R300k, or a {}",
+                names.join(", "),
+                formats::inputs()
             ),
         )
         .into())
@@ -337,9 +337,9 @@ mod tests {
         for (wrong, help) in [
             ("L1M-rotatd", "did you mean L1M-rotated?"),
             ("S5000", "did you mean S500?"),
-            ("nope.toml", "scene file"),
+            ("nope.toml", "or a scene (.toml)"),
             ("", "give one of S2"),
-            ("scenes", "scene file"),
+            ("scenes", "or a scene (.toml)"),
             ("R0", "R300k"),
             ("R-1", "R300k"),
             // More than a tree can name, and than 32 bits hold.

@@ -13,6 +13,7 @@ use crate::accuracy::families::Family;
 use crate::device::DeviceChoice;
 use crate::error::nearest;
 use crate::render::paths::EffectChoice;
+use crate::scene::formats;
 use crate::scene::limits::{MAX_BOUNCES, MAX_IMAGE_SIDE, MAX_SAMPLES};
 use crate::scene::tree::Acceleration;
 use crate::shown::shown;
@@ -49,7 +50,7 @@ pub(super) enum Command {
     Exit codes: 0 done, 1 the render or the check failed, 2 the input is wrong, 128 and a signal's number if that ended it.\n\
     SPHERULE_LOG=debug logs what happens; RAYON_NUM_THREADS=N sets the number of the CPU's threads.")]
 pub(super) struct RenderArguments {
-    /// The scene (.toml) or molecule (.pdb, .ent, .xyz)
+    #[arg(help = format!("The {}", formats::inputs()))]
     pub(super) input: PathBuf,
 
     /// The image to write: 8-bit PNG, or linear 32-bit float EXR [default: the input's name with .png, in the current directory]
@@ -175,7 +176,7 @@ pub(super) struct AccuracyArguments {
 #[derive(Debug, Args)]
 #[command(allow_negative_numbers = true)]
 pub(super) struct ExplainArguments {
-    /// The scene (.toml) or molecule (.pdb, .ent, .xyz)
+    #[arg(help = format!("The {}", formats::inputs()))]
     pub(super) input: PathBuf,
 
     /// What to measure: auto (a real GPU, else the CPU), gpu, cpu, or a part of an adapter's name
@@ -218,8 +219,10 @@ pub(super) struct BenchArguments {
     #[arg(long, value_name = "auto|gpu|cpu|NAME", default_value = "auto")]
     pub(super) device: DeviceChoice,
 
-    /// Measure this scene only: a name, or a file (.toml, .pdb, .ent or .xyz); may be given again [default: all but R10M]
-    #[arg(long, value_name = "NAME|FILE")]
+    #[arg(long, value_name = "NAME|FILE", help = format!(
+        "Measure this scene only: a name, or a {}; may be given again [default: all but R10M]",
+        formats::inputs()
+    ))]
     pub(super) scene: Vec<OsString>,
 
     /// The image's size in pixels
@@ -325,10 +328,11 @@ fn subject(text: OsString) -> Result<Subject, String> {
         None => {
             let names: Vec<&str> = Family::ALL.iter().map(|family| family.name()).collect();
             Err(format!(
-                "there is no family `{}`{} Give one of {}, or a scene file (.toml, .pdb, .ent or .xyz)",
+                "there is no family `{}`{} Give one of {}, or a {}",
                 shown(text),
                 did_you_mean(text, &names),
-                names.join(", ")
+                names.join(", "),
+                formats::inputs()
             ))
         }
     }

@@ -20,6 +20,7 @@ use crate::plural::count_of;
 use crate::render::paths::{Reached, StoppedBy};
 use crate::render::{Rendered, Settings, estimate, render};
 use crate::scene::Scene;
+use crate::scene::formats;
 use crate::scene::tree::Acceleration;
 use crate::shown::shown_path;
 use crate::write::same::{refuse_clashes, refuse_inputs};
@@ -390,6 +391,7 @@ fn check(
 
 /// The input's name with `.png`, in the current directory.
 fn default_output(input: &Path) -> PathBuf {
+    let input = formats::uncompressed(input);
     let mut name = input.file_stem().unwrap_or(input.as_os_str()).to_owned();
     name.push(".png");
     name.into()

@@ -7,6 +7,7 @@
 //! | [`limits`] | what the numbers of a scene may be |
 //! | [`surroundings`] | light, sky, fog, lens: what there is besides spheres |
 //! | [`mod@effects`] | which effects a scene calls for, and by what |
+//! | [`formats`] | the kinds of files that scenes are read from |
 //! | [`toml_file`] | scenes written by a person |
 //! | [`tree`] | boxes around the spheres of a world |
 //! | `validate` | whether a scene can be rendered |
@@ -16,6 +17,7 @@
 
 pub mod effects;
 pub mod environment;
+pub mod formats;
 pub mod limits;
 pub mod molecule;
 pub mod surroundings;
@@ -31,6 +33,7 @@ use std::path::{Path, PathBuf};
 use glam::Vec3;
 
 use crate::error::{Error, Result, SceneError};
+use formats::{Contents, Format};
 pub use surroundings::{Develop, FogBall, Lens, PointLight, Sampling, Surroundings};
 pub use view::View;
 pub use world::World;
@@ -93,21 +96,21 @@ impl Scene {
         }
     }
 
-    /// Reads a scene (`.toml`) or a molecule (`.pdb`, `.ent`, `.xyz`).
+    /// Reads a scene or a molecule, in one of the [`formats`].
     ///
     /// # Errors
     ///
     /// [`Error::Scene`] says which file is wrong, where in it, and how to mend it.
     pub fn load(path: impl AsRef<Path>) -> Result<Self> {
         let path = path.as_ref();
-        let mut scene = match extension(path).as_str() {
-            "toml" => toml_file::load(path)?,
-            extension if molecule::is_molecule(extension) => Self::new(molecule::load(path)?),
-            _ => {
+        let mut scene = match Format::of(path).map(|format| format.contents) {
+            Some(Contents::Scene(load)) => load(path)?,
+            Some(Contents::Atoms(parse)) => Self::new(molecule::load(path, parse)?),
+            None => {
                 return Err(Error::Scene(SceneError::without_place(
                     path,
                     "not a kind of file that spherule reads",
-                    "give a scene (.toml) or a molecule (.pdb, .ent or .xyz)",
+                    format!("give a {}", formats::inputs()),
                 )));
             }
         };
@@ -127,11 +130,4 @@ impl Scene {
     pub fn aspect(&self) -> f64 {
         f64::from(self.width) / f64::from(self.height)
     }
-}
-
-/// The file's extension in lower case, empty where there is none.
-fn extension(path: &Path) -> String {
-    path.extension()
-        .map(|extension| extension.to_string_lossy().to_lowercase())
-        .unwrap_or_default()
 }

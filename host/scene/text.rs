@@ -4,6 +4,7 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 
+use flate2::read::MultiGzDecoder;
 use rayon::prelude::*;
 
 use crate::error::{Error, Result, SceneError};
@@ -26,8 +27,12 @@ pub(super) fn read_text(path: &Path) -> Result<String> {
                 "name a file",
             ),
             io::ErrorKind::UnexpectedEof => (
-                "got shorter while it was read".to_owned(),
-                "wait until whoever writes it is done",
+                "ends too early".to_owned(),
+                "wait until whoever writes it is done, or fetch it again",
+            ),
+            io::ErrorKind::InvalidInput | io::ErrorKind::InvalidData => (
+                format!("is compressed, and not rightly: {error}"),
+                "fetch it again, or compress it by gzip",
             ),
             io::ErrorKind::OutOfMemory => (
                 "there is no memory to read it".to_owned(),
@@ -66,8 +71,21 @@ const LARGE_FILE: u64 = 1 << 24;
 /// What each reads at once.
 const PIECE: usize = 1 << 22;
 
-/// Reads a whole file; of one that begins with a byte of zero, that byte.
+/// What files begin with that hold another one compressed (RFC 1952).
+const GZIP: &[u8] = &[0x1f, 0x8b];
+
+/// Reads a whole file, what it holds if it is compressed; of one that begins with a byte of zero, that byte.
 fn read_bytes(path: &Path) -> io::Result<Vec<u8>> {
+    let bytes = read_as_they_are(path)?;
+    if !bytes.starts_with(GZIP) {
+        return Ok(bytes);
+    }
+    let mut inner = Vec::new();
+    read_stream(&mut MultiGzDecoder::new(&bytes[..]), &mut inner)?;
+    Ok(inner)
+}
+
+fn read_as_they_are(path: &Path) -> io::Result<Vec<u8>> {
     let mut file = File::open(path)?;
     let length = file.metadata()?.len();
     if length >= LARGE_FILE {

@@ -15,6 +15,7 @@ use spherule_kernel::fog::Fog;
 use spherule_kernel::{Material, Sphere};
 use toml::Spanned;
 
+use super::formats::{self, Contents, Format};
 use super::limits;
 use super::surroundings::{FogBall, Lens, PointLight, Sun, Surroundings, Tonemap};
 use super::{Scene, View, World, environment, molecule, text::read_text};
@@ -925,7 +926,7 @@ impl Reader<'_> {
     fn particles(&self, file: &Spanned<Value>) -> Result<World> {
         let name = self.text("file", file)?;
         let path = self.beside(name);
-        if !molecule::is_molecule(&super::extension(&path)) {
+        let Some(Contents::Atoms(parse)) = Format::of(&path).map(|format| format.contents) else {
             return Err(self
                 .wrong(
                     file,
@@ -934,11 +935,11 @@ impl Reader<'_> {
                         shown(name)
                     ),
                     "unknown kind",
-                    "give a .pdb, .ent or .xyz file",
+                    format!("give a {} file", formats::extensions(true)),
                 )
                 .into());
-        }
-        molecule::load(&path).map_err(|error| match error {
+        };
+        molecule::load(&path, parse).map_err(|error| match error {
             // A file that is not there is a mistake in the scene; one that is there but wrong
             // says more about itself than its name here does.
             Error::Scene(inner) if inner.place.is_none() => self

@@ -11,7 +11,6 @@ use glam::Vec3;
 use rayon::prelude::*;
 use spherule_kernel::{Material, Sphere};
 
-use super::extension;
 use super::text::read_text;
 use super::world::{GRAIN, World};
 use crate::error::{Error, Place, Result, SceneError};
@@ -28,25 +27,17 @@ pub struct Atom {
     pub element: &'static Element,
 }
 
-/// Whether a file with this extension (in lower case) is read as a molecule.
-#[must_use]
-pub fn is_molecule(extension: &str) -> bool {
-    matches!(extension, "pdb" | "ent" | "xyz")
-}
-
 /// Reads the molecule at `path` as a world of spheres.
 ///
 /// # Errors
 ///
 /// [`Error::Scene`] with the line that is wrong.
-pub fn load(path: &Path) -> Result<World> {
+pub(super) fn load(
+    path: &Path,
+    parse: fn(&str) -> std::result::Result<Vec<Atom>, WrongLine>,
+) -> Result<World> {
     let text = read_text(path)?;
-    let atoms = if extension(path) == "xyz" {
-        xyz::parse(&text)
-    } else {
-        pdb::parse(&text)
-    };
-    match atoms {
+    match parse(&text) {
         Ok(atoms) if atoms.len() > MAX_SPHERES => Err(Error::Scene(SceneError::without_place(
             path,
             format!(

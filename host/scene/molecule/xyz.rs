@@ -1,8 +1,8 @@
 //! Atoms from the XYZ format: a count, a comment, then one atom a line.
 //!
-//! An atom is an element (symbol or atomic number) and three coordinates in ångström; what
-//! follows on its line is ignored. Of several frames the first is read. The column order of
-//! "extended XYZ" is honoured as far as element and position come first, as they do by default.
+//! An atom is an element (symbol or atomic number) and three coordinates in ångström. Which columns
+//! these are extended XYZ says in its comment: `Properties=species:S:1:pos:R:3` is what is taken where nothing is said. Other columns
+//! are passed over. Of several frames the first is read.
 
 use std::mem::MaybeUninit;
 
@@ -12,6 +12,7 @@ use rayon::prelude::*;
 use super::elements::{self, Element};
 use super::{Atom, WrongLine, is_coordinate};
 use crate::plural::count_of;
+use crate::shown::shown;
 
 /// Reads the atoms of the first frame of an XYZ file.
 ///
@@ -38,18 +39,7 @@ pub fn parse(text: &str) -> Result<Vec<Atom>, WrongLine> {
         ));
     }
     let (comment, rest) = rest.split_once('\n').unwrap_or((rest, ""));
-    if let Some(properties) = comment.split("Properties=").nth(1)
-        && !properties
-            .trim_start_matches('"')
-            .starts_with("species:S:1:pos:R:3")
-    {
-        return Err(WrongLine::new(
-            1,
-            "the columns are in an order that spherule does not read",
-            "element and position do not come first",
-            "write the file with Properties=species:S:1:pos:R:3 first",
-        ));
-    }
+    let columns = Columns::of(comment)?;
 
     let (blocks, lines, rest) = blocks(rest, count);
     let mut atoms = Vec::new();
@@ -62,7 +52,7 @@ pub fn parse(text: &str) -> Result<Vec<Atom>, WrongLine> {
         )
     })?;
     let mut dummies = 0;
-    for read in read_blocks(&blocks, &mut atoms) {
+    for read in read_blocks(&blocks, columns, &mut atoms) {
         dummies += read.dummies;
         match read.wrong {
             None => {}
@@ -181,7 +171,7 @@ enum Wrong {
 }
 
 /// Adds the atoms of all blocks, each to its place; what else was found, block by block.
-fn read_blocks(blocks: &[Block<'_>], atoms: &mut Vec<Atom>) -> Vec<Read> {
+fn read_blocks(blocks: &[Block<'_>], columns: Columns, atoms: &mut Vec<Atom>) -> Vec<Read> {
     let mut rooms = Vec::with_capacity(blocks.len());
     let mut rest = atoms.spare_capacity_mut();
     for block in blocks {
@@ -192,7 +182,7 @@ fn read_blocks(blocks: &[Block<'_>], atoms: &mut Vec<Atom>) -> Vec<Read> {
     let read: Vec<Read> = blocks
         .par_iter()
         .zip(rooms)
-        .map(|(block, room)| read_block(block, room))
+        .map(|(block, room)| read_block(block, columns, room))
         .collect();
     // Where there are dummies, those that follow move up.
     let (mut from, mut to) = (0, 0);
@@ -210,7 +200,7 @@ fn read_blocks(blocks: &[Block<'_>], atoms: &mut Vec<Atom>) -> Vec<Read> {
 }
 
 /// Reads the atoms of a block into its room, which has one for each line.
-fn read_block(block: &Block<'_>, room: &mut [MaybeUninit<Atom>]) -> Read {
+fn read_block(block: &Block<'_>, columns: Columns, room: &mut [MaybeUninit<Atom>]) -> Read {
     let first = FIRST_ATOM + block.before;
     let mut read = Read {
         atoms: 0,
@@ -220,15 +210,12 @@ fn read_block(block: &Block<'_>, room: &mut [MaybeUninit<Atom>]) -> Read {
     // Neighbours are often of one element.
     let mut last = ("", None);
     for (number, line) in block.text.lines().enumerate() {
-        let mut fields = line.split_whitespace();
-        let Some(symbol) = fields.next() else {
-            read.wrong = Some((first + number, Wrong::Blank));
-            break;
-        };
-        let mut coordinate = || fields.next().and_then(number_of);
-        let (Some(x), Some(y), Some(z)) = (coordinate(), coordinate(), coordinate()) else {
-            read.wrong = Some((first + number, Wrong::Coordinate));
-            break;
+        let (symbol, position) = match columns.fields(line) {
+            Ok(fields) => fields,
+            Err(wrong) => {
+                read.wrong = Some((first + number, wrong));
+                break;
+            }
         };
         if symbol != last.0 {
             last = (symbol, element(symbol));
@@ -241,13 +228,103 @@ fn read_block(block: &Block<'_>, room: &mut [MaybeUninit<Atom>]) -> Read {
             }
             None => &elements::UNKNOWN,
         };
-        room[read.atoms].write(Atom {
-            position: Vec3::new(x, y, z),
-            element,
-        });
+        room[read.atoms].write(Atom { position, element });
         read.atoms += 1;
     }
     read
+}
+
+/// Where on its line an atom's element is, and the first of its coordinates.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Columns {
+    element: usize,
+    position: usize,
+}
+
+impl Columns {
+    /// Where nothing is said of them.
+    const PLAIN: Self = Self {
+        element: 0,
+        position: 1,
+    };
+
+    /// As the comment of extended XYZ says: names, types and widths in the order of the columns.
+    fn of(comment: &str) -> Result<Self, WrongLine> {
+        let Some((_, properties)) = comment.split_once("Properties=") else {
+            return Ok(Self::PLAIN);
+        };
+        let wrong = |message: String, label| {
+            WrongLine::new(
+                1,
+                message,
+                label,
+                "say which columns there are, for example by Properties=species:S:1:pos:R:3",
+            )
+        };
+        let end = |c: char| c.is_whitespace() || c == '"';
+        let properties = properties.trim_start_matches('"');
+        let properties = properties.split(end).next().unwrap_or_default();
+        let words: Vec<&str> = properties.split(':').collect();
+        let (mut element, mut position, mut at) = (None, None, 0_usize);
+        for property in words.chunks(3) {
+            let width = match property {
+                [_, "S" | "R" | "I" | "L", width] => width.parse::<u16>().ok(),
+                _ => None,
+            };
+            let Some(width) = width.filter(|width| *width > 0).map(usize::from) else {
+                return Err(wrong(
+                    format!("{} is no property", shown(&property.join(":"))),
+                    "not a name, a type of S, R, I or L, and a width",
+                ));
+            };
+            match (property[0], property[1], width) {
+                ("species" | "element", "S", 1) | ("Z" | "numbers", "I", 1) => {
+                    element = element.or(Some(at));
+                }
+                ("pos", "R", 3) => position = Some(at),
+                _ => {}
+            }
+            at += width;
+        }
+        match (element, position) {
+            (Some(element), Some(position)) => Ok(Self { element, position }),
+            (None, _) => Err(wrong(
+                "no column has the elements of the atoms".into(),
+                "neither species:S:1 nor Z:I:1",
+            )),
+            (_, None) => Err(wrong(
+                "no columns have the positions of the atoms".into(),
+                "no pos:R:3",
+            )),
+        }
+    }
+
+    /// The element and the position of an atom's line.
+    fn fields<'a>(&self, line: &'a str) -> std::result::Result<(&'a str, Vec3), Wrong> {
+        let mut fields = line.split_whitespace();
+        if *self == Self::PLAIN {
+            let symbol = fields.next().ok_or(Wrong::Blank)?;
+            return Ok((symbol, position_of(&mut fields)?));
+        }
+        let mut after = fields.clone();
+        let symbol = fields.nth(self.element);
+        if self.position > 0 {
+            after.nth(self.position - 1);
+        }
+        let is_blank = line.trim_start().is_empty();
+        let symbol = symbol.ok_or(if is_blank {
+            Wrong::Blank
+        } else {
+            Wrong::Coordinate
+        })?;
+        Ok((symbol, position_of(&mut after)?))
+    }
+}
+
+/// The next three fields.
+fn position_of<'a>(fields: &mut impl Iterator<Item = &'a str>) -> std::result::Result<Vec3, Wrong> {
+    let mut coordinate = || fields.next().and_then(number_of).ok_or(Wrong::Coordinate);
+    Ok(Vec3::new(coordinate()?, coordinate()?, coordinate()?))
 }
 
 fn missing(line: usize, expected: usize, found: usize) -> WrongLine {
@@ -303,6 +380,32 @@ mod tests {
         let symbols: Vec<&str> = atoms.iter().map(|atom| atom.element.symbol).collect();
         assert_eq!(symbols, ["C", "Cl", "Fe", "O"]);
         assert_eq!(atoms[2].position.x, 2.0);
+    }
+
+    #[test]
+    fn columns_are_those_that_the_comment_names() {
+        let expected = parse("2\n\nC 1 2 3\nFe 4 5 6\n").expect("atoms");
+        for (comment, lines) in [
+            (
+                "Properties=species:S:1:pos:R:3:forces:R:3",
+                "C 1 2 3 9 9 9\nFe 4 5 6 9 9 9\n",
+            ),
+            (
+                "Lattice=\"1 0 0 0 1 0 0 0 1\" Properties=pos:R:3:species:S:1 pbc=\"T T T\"",
+                "1 2 3 C\n4 5 6 Fe\n",
+            ),
+            (
+                "Properties=\"id:I:1:pos:R:3:Z:I:1\"",
+                "7 1 2 3 6\n8 4 5 6 26\n",
+            ),
+            (
+                "Properties=velo:R:3:element:S:1:flag:L:1:pos:R:3",
+                "9 9 9 C T 1 2 3\n9 9 9 Fe F 4 5 6\n",
+            ),
+        ] {
+            let text = format!("2\n{comment}\n{lines}");
+            assert_eq!(parse(&text).expect(comment), expected, "{comment}");
+        }
     }
 
     #[test]
@@ -381,7 +484,15 @@ mod tests {
             ("1\n\nC 0 -1e18 0\n", 2),
             ("1e9\n\nC 0 0 0\n", 0),
             ("4000000000\n\nC 0 0 0\n", 2),
-            ("1\nProperties=pos:R:3:species:S:1\n0 0 0 C\n", 1),
+            ("1\nProperties=pos:R:3\n0 0 0\n", 1),
+            ("1\nProperties=species:S:1:pos:R:2\nC 0 0\n", 1),
+            ("1\nProperties=species:S:1:pos:R\nC 0 0 0\n", 1),
+            ("1\nProperties=species:S:0:pos:R:3\nC 0 0 0\n", 1),
+            ("1\nProperties=species:S:1:pos:X:3\nC 0 0 0\n", 1),
+            ("1\nProperties=\nC 0 0 0\n", 1),
+            ("1\nProperties=id:I:1:species:S:1:pos:R:3\n7 C 0 0\n", 2),
+            ("1\nProperties=pos:R:3:species:S:1\n0 0 0\n", 2),
+            ("1\nProperties=pos:R:3:species:S:1\n \n", 2),
         ] {
             let wrong = parse(text).expect_err(text);
             assert_eq!(wrong.line, line, "{text:?}");

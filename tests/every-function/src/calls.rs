@@ -986,6 +986,18 @@ pub const CALLS: &[Call] = &[
     Call::new("spherule::scene::environment::load", |s| {
         seen(spherule::scene::environment::load(&s.path(), s.draw()))
     }),
+    Call::new("spherule::scene::formats::Format::has_atoms", |s| {
+        seen(spherule::scene::formats::Format::has_atoms(&s.draw()))
+    }),
+    Call::new("spherule::scene::formats::Format::of", |s| {
+        seen(spherule::scene::formats::Format::of(&s.path()))
+    }),
+    Call::new("spherule::scene::formats::extensions", |s| {
+        seen(spherule::scene::formats::extensions(s.draw()))
+    }),
+    Call::new("spherule::scene::formats::inputs", |_| {
+        seen(spherule::scene::formats::inputs())
+    }),
     Call::new("spherule::scene::limits::Range as Display", |s| {
         seen(s.draw::<spherule::scene::limits::Range>().to_string())
     }),
@@ -1016,12 +1028,6 @@ pub const CALLS: &[Call] = &[
     }),
     Call::new("spherule::scene::molecule::elements::by_symbol", |s| {
         seen(spherule::scene::molecule::elements::by_symbol(&s.text()))
-    }),
-    Call::new("spherule::scene::molecule::is_molecule", |s| {
-        seen(spherule::scene::molecule::is_molecule(&s.text()))
-    }),
-    Call::new("spherule::scene::molecule::load", |s| {
-        seen(spherule::scene::molecule::load(&s.path()))
     }),
     Call::new("spherule::scene::molecule::pdb::parse", |s| {
         seen(spherule::scene::molecule::pdb::parse(&s.file("pdb")))

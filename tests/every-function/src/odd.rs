@@ -32,6 +32,7 @@ use spherule::kernel::{
 use spherule::render::pace::Pace;
 use spherule::render::paths::EffectChoice;
 use spherule::render::{cpu, gpu, paths};
+use spherule::scene::formats::{FORMATS, Format};
 use spherule::scene::molecule::elements::{Element, UNKNOWN, by_number};
 use spherule::scene::surroundings::{Develop, EnvironmentImage, Lens, Sun, Surroundings, Tonemap};
 use spherule::scene::tree::{self, Acceleration, Nodes, Tree};
@@ -421,6 +422,12 @@ impl Odd for String {
 impl Odd for &'static str {
     fn odd(s: &mut Source) -> Self {
         s.pick(&["", "certified", "ä\0<&>", "a name"])
+    }
+}
+
+impl Odd for Format {
+    fn odd(s: &mut Source) -> Self {
+        FORMATS[s.below(FORMATS.len())]
     }
 }
 

@@ -201,6 +201,7 @@ const BY_HAND: &[&str] = &[
     "spherule::render::pace::Pace",
     "spherule::render::paths::prepare::Prepared",
     "spherule::scene::Scene",
+    "spherule::scene::formats::Format",
     "spherule::scene::tree::Nodes",
     "spherule::scene::tree::Tree",
     "spherule::scene::world::World",
