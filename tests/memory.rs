@@ -134,15 +134,15 @@ fn what_is_traced_on_a_gpu_can_be_read_back() {
         scene.display(),
         folder.path().join("out.exr").display()
     );
-    let mut pictures = 0;
-    for mebibytes in (540..=780).step_by(20) {
-        let limit = format!("ulimit -v {}", mebibytes * 1000);
+    // Up to the first limit that is large enough, which depends on the driver and the number of its threads.
+    let is_done = (540_000..8_000_000).step_by(20_000).any(|kibibytes| {
+        let limit = format!("ulimit -v {kibibytes}");
         let (code, stderr) = spherule(&limit, &[], &arguments);
         assert!(code == Some(0) || code == Some(1), "{limit}: {stderr}");
         assert!(!stderr.contains("while reading"), "{limit}: {stderr}");
-        pictures += usize::from(code == Some(0));
-    }
-    assert!(pictures > 0);
+        code == Some(0)
+    });
+    assert!(is_done);
 }
 
 /// Limits on data (`ulimit -d`) are as good as those on addresses: a driver is not started in what it would break in.
