@@ -30,6 +30,7 @@
 
 pub mod accuracy;
 pub mod bench;
+#[cfg(feature = "cli")]
 pub mod cli;
 pub mod cpu;
 pub mod device;

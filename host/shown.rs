@@ -39,6 +39,7 @@ pub fn shown_up_to(text: &str, most: usize) -> Cow<'_, str> {
 }
 
 /// [`shown`] for a message that may have several lines.
+#[cfg(feature = "cli")]
 #[must_use]
 pub fn shown_lines(text: &str) -> String {
     const MOST: usize = 4000;

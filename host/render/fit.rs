@@ -98,6 +98,7 @@ fn size(whole: (u32, u32), pixels: f64) -> (u32, u32) {
 /// # Errors
 ///
 /// As [`render`].
+#[cfg_attr(not(feature = "cli"), expect(dead_code, reason = "the command asks"))]
 pub(crate) fn probe(
     scene: &Scene,
     settings: Settings,

@@ -23,9 +23,12 @@ mod waiting;
 
 use std::path::Path;
 
+#[cfg(feature = "cli")]
 pub use image::{Format, Room};
 pub use output::Output;
+#[cfg(feature = "cli")]
 pub(crate) use temporary::remove_all as remove_unfinished;
+#[cfg(feature = "cli")]
 pub(crate) use waiting::{Waiting, longest as longest_wait};
 
 /// The directory that a file of this name is in.

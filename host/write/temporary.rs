@@ -175,6 +175,7 @@ impl Drop for Temporary {
 
 /// Removes every temporary file of this process. No other is made, and none is renamed, until the guard is dropped:
 /// a process that is about to end keeps it.
+#[cfg(feature = "cli")]
 #[must_use]
 pub(crate) fn remove_all() -> impl Sized {
     let mut live = live();

@@ -38,6 +38,7 @@ impl Drop for Waiting {
 }
 
 /// How long the longest call that waits now has waited.
+#[cfg_attr(not(feature = "cli"), expect(dead_code, reason = "the command asks"))]
 pub(crate) fn longest() -> Option<Duration> {
     since().iter().map(Instant::elapsed).max()
 }
