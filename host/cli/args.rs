@@ -48,7 +48,8 @@ pub(super) enum Command {
 #[command(allow_negative_numbers = true)]
 #[command(after_help = "Ctrl-C writes the picture as far as it is.\n\
     Exit codes: 0 done, 1 the render or the check failed, 2 the input is wrong, 128 and a signal's number if that ended it.\n\
-    SPHERULE_LOG=debug logs what happens; RAYON_NUM_THREADS=N sets the number of the CPU's threads.")]
+    SPHERULE_LOG=debug logs what happens; RAYON_NUM_THREADS=N sets the number of the CPU's threads, \
+    SPHERULE_CPU=plain|avx2|avx512 their vector instructions.")]
 pub(super) struct RenderArguments {
     #[arg(help = format!("The {}", formats::inputs()))]
     pub(super) input: PathBuf,
