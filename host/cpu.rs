@@ -6,6 +6,7 @@ use std::sync::OnceLock;
 use fearless_simd::Level;
 
 use crate::error::{Error, Result, SceneError};
+use crate::shown::shown;
 
 /// The variable that says which instructions are used, by [`InstructionSet::name`]. Without it, the widest of this machine are.
 pub const VARIABLE: &str = "SPHERULE_CPU";
@@ -67,7 +68,7 @@ impl InstructionSet {
                 .collect();
             Error::from(SceneError::without_place(
                 "",
-                format!("{VARIABLE} is `{}`, {what}", text.escape_debug()),
+                format!("{VARIABLE} is `{}`, {what}", shown(&text)),
                 format!("give one of {}, or unset it", there.join(", ")),
             ))
         };

@@ -138,6 +138,10 @@ fn compressed_files_that_are_wrong_are_refused() {
     let folder = tempfile::tempdir().expect("a folder");
     let (input, output) = (folder.path().join("a.xyz.gz"), folder.path().join("o.png"));
     let whole = compressed(&std::fs::read("scenes/c60.xyz").expect("a molecule"));
+    let padded = [&whole[..], &[0; 512]].concat();
+    std::fs::write(&input, padded).expect("a file");
+    render(&input, &output).assert().success();
+    std::fs::remove_file(&output).expect("a picture");
     let mut wrong = whole.clone();
     wrong[whole.len() / 2] ^= 0x55;
     for (bytes, says) in [

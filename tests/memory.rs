@@ -134,8 +134,14 @@ fn what_is_traced_on_a_gpu_can_be_read_back() {
         scene.display(),
         folder.path().join("out.exr").display()
     );
-    // Up to the first limit that is large enough, which depends on the driver and the number of its threads.
-    let is_done = (540_000..8_000_000).step_by(20_000).any(|kibibytes| {
+    if common::gpus().iter().any(|gpu| !gpu.is_software()) {
+        println!(
+            "SKIPPED: what_is_traced_on_a_gpu_can_be_read_back, for drivers of real GPUs take addresses as they like"
+        );
+        return;
+    }
+    // Up to the first limit that is large enough, which depends on the number of the driver's threads.
+    let is_done = (540_000..16_000_000).step_by(20_000).any(|kibibytes| {
         let limit = format!("ulimit -v {kibibytes}");
         let (code, stderr) = spherule(&limit, &[], &arguments);
         assert!(code == Some(0) || code == Some(1), "{limit}: {stderr}");

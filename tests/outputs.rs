@@ -981,7 +981,10 @@ fn other_signals_keep_the_picture_too() {
         std::os::unix::process::ExitStatusExt::signal(&status),
         Some(3)
     );
-    assert_eq!(names(path), ["scene.toml"]);
+    // Where the system writes a core, there is one, too.
+    let mut names = names(path);
+    names.retain(|name| !name.starts_with("core"));
+    assert_eq!(names, ["scene.toml"]);
 }
 
 /// The processor time that a shell allows is over: the picture is kept.

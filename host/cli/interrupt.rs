@@ -65,8 +65,8 @@ fn on_signal(signal: i32) {
     let first = REQUESTED.compare_exchange(0, signal, Ordering::SeqCst, Ordering::SeqCst);
     let is_patient = match first {
         Ok(_) => true,
-        // A timer that goes on says nothing new.
-        Err(first) => first == signal && is_timer(signal),
+        // A timer is nobody's impatience.
+        Err(_) => is_timer(signal),
     };
     if is_patient && GRACEFUL.load(Ordering::SeqCst) > 0 && !waits_in_vain() {
         return;

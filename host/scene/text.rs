@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 
-use flate2::read::MultiGzDecoder;
+use flate2::bufread::GzDecoder;
 use rayon::prelude::*;
 
 use crate::error::{Error, Result, SceneError};
@@ -30,7 +30,7 @@ pub(super) fn read_text(path: &Path) -> Result<String> {
                 "ends too early".to_owned(),
                 "wait until whoever writes it is done, or fetch it again",
             ),
-            io::ErrorKind::InvalidInput | io::ErrorKind::InvalidData => (
+            io::ErrorKind::InvalidData => (
                 format!("is compressed, and not rightly: {error}"),
                 "fetch it again, or compress it by gzip",
             ),
@@ -80,8 +80,16 @@ fn read_bytes(path: &Path) -> io::Result<Vec<u8>> {
     if !bytes.starts_with(GZIP) {
         return Ok(bytes);
     }
-    let mut inner = Vec::new();
-    read_stream(&mut MultiGzDecoder::new(&bytes[..]), &mut inner)?;
+    let (mut inner, mut left) = (Vec::new(), &bytes[..]);
+    // Some have zeros behind the last member, to fill a block.
+    while left.iter().any(|byte| *byte != 0) {
+        let mut member = GzDecoder::new(left);
+        read_stream(&mut member, &mut inner).map_err(|error| match error.kind() {
+            io::ErrorKind::InvalidInput => io::Error::new(io::ErrorKind::InvalidData, error),
+            _ => error,
+        })?;
+        left = member.into_inner();
+    }
     Ok(inner)
 }
 

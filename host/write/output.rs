@@ -132,9 +132,14 @@ impl Output {
     pub fn write(&self, bytes: &[u8]) -> Result<()> {
         match &self.place {
             Place::Stdout => to_stdout(bytes),
-            Place::Stream(stream) => stream
-                .write(bytes)
-                .map_err(|error| self.explained(error.into(), bytes.len() as u64)),
+            Place::Stream(stream) => match stream.write(bytes) {
+                Err(error) if stream.is_stdout() && error.kind() == io::ErrorKind::BrokenPipe => {
+                    Ok(())
+                }
+                written => {
+                    written.map_err(|error| self.explained(error.into(), bytes.len() as u64))
+                }
+            },
             Place::File(_) => self.fill(bytes.len() as u64, |mut sink, _| {
                 sink.write_all(bytes)?;
                 Ok(())
@@ -166,9 +171,14 @@ impl Output {
                 "try another size or format",
             ),
             Failure::Spool(error) => self.spool_failed(&error, Some(most)),
-            Failure::Kept(error, kept) => self.failed(
+            Failure::Kept { error, kept, is_cut } => self.failed(
                 format!(
-                    "cannot be written: {}; what was to be written is whole in {}",
+                    "{}: {}; what was to be written is whole in {}",
+                    if is_cut {
+                        "was overwritten in part, because it cannot be replaced, and the rest cannot be written"
+                    } else {
+                        "cannot be written"
+                    },
                     said(&error),
                     shown_path(&kept)
                 ),
@@ -365,7 +375,12 @@ pub(super) enum Failure {
     /// The temporary file that it was to go through cannot be written or read.
     Spool(io::Error),
     /// It is whole, and where it is, because it did not get its name.
-    Kept(io::Error, PathBuf),
+    Kept {
+        error: io::Error,
+        kept: PathBuf,
+        /// Whether what has the name was overwritten in part.
+        is_cut: bool,
+    },
 }
 
 impl From<io::Error> for Failure {
@@ -377,7 +392,11 @@ impl From<io::Error> for Failure {
 impl From<Unnamed> for Failure {
     fn from(unnamed: Unnamed) -> Self {
         match unnamed.kept {
-            Some(kept) => Self::Kept(unnamed.error, kept),
+            Some(kept) => Self::Kept {
+                error: unnamed.error,
+                kept,
+                is_cut: unnamed.is_cut,
+            },
             None => Self::Io(unnamed.error),
         }
     }
@@ -484,7 +503,8 @@ fn fill_file(
 ) -> Result<(), Failure> {
     let mut temporary = Temporary::in_directory(directory_of(target))?;
     if let Ok(old) = fs::metadata(target) {
-        take_after(temporary.file()?, &old)?;
+        // It was tried before the work; now the picture is worth more.
+        let _ = take_after(temporary.file()?, &old);
     }
     into_sink(temporary.file()?, write)?;
     temporary.rename_to(target)?;

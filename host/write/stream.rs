@@ -124,9 +124,16 @@ fn open(path: &Path) -> io::Result<Option<File>> {
             }
             Ok(Some(file))
         }
-        Err(error) if error.raw_os_error() == Some(libc::ENXIO) => Ok(None),
+        // A pipe without a reader; a device would be without a driver.
+        Err(error) if error.raw_os_error() == Some(libc::ENXIO) && is_pipe(path) => Ok(None),
         Err(error) => Err(error),
     }
+}
+
+#[cfg(unix)]
+fn is_pipe(path: &Path) -> bool {
+    use std::os::unix::fs::FileTypeExt;
+    std::fs::metadata(path).is_ok_and(|about| about.file_type().is_fifo())
 }
 
 #[cfg(unix)]

@@ -68,17 +68,36 @@ impl Temporary {
             return Err(io::Error::from(io::ErrorKind::NotFound).into());
         };
         let path = file.path().to_path_buf();
-        let renamed = file.persist(target).map(|_| ()).or_else(|refused| {
-            let mut file = refused.file;
-            match write_in_place(file.as_file_mut(), target, &refused.error) {
-                Some(Ok(())) => Ok(()),
-                Some(Err(error)) => Err(keep(file, target, error)),
-                None => Err(keep(file, target, refused.error)),
-            }
-        });
+        // Under the other name nobody removes it, whatever becomes of this process.
+        let refused = match file.persist(target) {
+            Ok(_) => None,
+            Err(refused) => Some((keep(refused.file, target), refused.error)),
+        };
         live.retain(|one| *one != path);
-        renamed?;
         drop(live);
+        match refused {
+            None => {}
+            Some((Some((mut file, kept)), error)) => {
+                match write_in_place(&mut file, target, &error) {
+                    Some(Ok(())) => fs::remove_file(kept)?,
+                    Some(Err(error)) => {
+                        return Err(Unnamed {
+                            error,
+                            kept: Some(kept),
+                            is_cut: true,
+                        });
+                    }
+                    None => {
+                        return Err(Unnamed {
+                            error,
+                            kept: Some(kept),
+                            is_cut: false,
+                        });
+                    }
+                }
+            }
+            Some((None, error)) => return Err(error.into()),
+        }
         Ok(sync_directory(super::directory_of(target))?)
     }
 
@@ -101,11 +120,17 @@ pub(super) struct Unnamed {
     pub(super) error: io::Error,
     /// What it is called instead, if it is whole.
     pub(super) kept: Option<PathBuf>,
+    /// Whether what has the name was overwritten in part.
+    pub(super) is_cut: bool,
 }
 
 impl From<io::Error> for Unnamed {
     fn from(error: io::Error) -> Self {
-        Self { error, kept: None }
+        Self {
+            error,
+            kept: None,
+            is_cut: false,
+        }
     }
 }
 
@@ -138,12 +163,9 @@ fn write_in_place(file: &mut File, target: &Path, refused: &io::Error) -> Option
     Some(write())
 }
 
-/// Gives a file that did not become `target` a name under which the next run does not remove it.
-fn keep(file: NamedTempFile, target: &Path, error: io::Error) -> Unnamed {
-    let (_file, path) = match file.keep() {
-        Ok(kept) => kept,
-        Err(_) => return error.into(),
-    };
+/// Gives a file that did not become `target` a name under which the next run does not remove it; `None` if it is not there any more.
+fn keep(file: NamedTempFile, target: &Path) -> Option<(File, PathBuf)> {
+    let (file, path) = file.keep().ok()?;
     let name = path.file_name().and_then(OsStr::to_str).unwrap_or_default();
     let name = name.trim_start_matches('.').trim_end_matches(SUFFIX);
     let mut other = path.with_file_name(name);
@@ -156,10 +178,8 @@ fn keep(file: NamedTempFile, target: &Path, error: io::Error) -> Unnamed {
     } else {
         path
     };
-    Unnamed {
-        error,
-        kept: fs::symlink_metadata(&kept).is_ok().then_some(kept),
-    }
+    fs::symlink_metadata(&kept).ok()?;
+    Some((file, kept))
 }
 
 impl Drop for Temporary {

@@ -62,7 +62,11 @@ pub fn parse(text: &str) -> Result<Vec<Atom>, WrongLine> {
                     line,
                     "an atom needs an element and three coordinates",
                     "a coordinate is missing, no number, or 1e18 and more",
-                    "write lines like: C 0.0 1.2 -3.4",
+                    if columns == Columns::PLAIN {
+                        "write lines like: C 0.0 1.2 -3.4"
+                    } else {
+                        "write the columns that the second line names"
+                    },
                 ));
             }
         }
@@ -250,9 +254,18 @@ impl Columns {
 
     /// As the comment of extended XYZ says: names, types and widths in the order of the columns.
     fn of(comment: &str) -> Result<Self, WrongLine> {
-        let Some((_, properties)) = comment.split_once("Properties=") else {
+        // A word of its own; and without a colon it is a comment of somebody's.
+        let is_there = |at: &usize| {
+            comment[..*at]
+                .chars()
+                .next_back()
+                .is_none_or(char::is_whitespace)
+        };
+        let key = "Properties=";
+        let Some(at) = comment.match_indices(key).map(|(at, _)| at).find(is_there) else {
             return Ok(Self::PLAIN);
         };
+        let properties = &comment[at + key.len()..];
         let wrong = |message: String, label| {
             WrongLine::new(
                 1,
@@ -264,6 +277,9 @@ impl Columns {
         let end = |c: char| c.is_whitespace() || c == '"';
         let properties = properties.trim_start_matches('"');
         let properties = properties.split(end).next().unwrap_or_default();
+        if !properties.contains(':') {
+            return Ok(Self::PLAIN);
+        }
         let words: Vec<&str> = properties.split(':').collect();
         let (mut element, mut position, mut at) = (None, None, 0_usize);
         for property in words.chunks(3) {
@@ -409,6 +425,23 @@ mod tests {
     }
 
     #[test]
+    fn comments_are_free() {
+        for comment in [
+            "MyProperties=3:x note",
+            "Properties=optimised",
+            "Properties=",
+            "a:b",
+        ] {
+            assert_eq!(
+                parse(&format!("1\n{comment}\nC 0 0 0\n"))
+                    .expect(comment)
+                    .len(),
+                1
+            );
+        }
+    }
+
+    #[test]
     fn nothing_after_a_frame_is_dropped_without_a_word() {
         for (after, line) in [
             ("C 6 0 0\n", Some(4)),
@@ -489,7 +522,6 @@ mod tests {
             ("1\nProperties=species:S:1:pos:R\nC 0 0 0\n", 1),
             ("1\nProperties=species:S:0:pos:R:3\nC 0 0 0\n", 1),
             ("1\nProperties=species:S:1:pos:X:3\nC 0 0 0\n", 1),
-            ("1\nProperties=\nC 0 0 0\n", 1),
             ("1\nProperties=id:I:1:species:S:1:pos:R:3\n7 C 0 0\n", 2),
             ("1\nProperties=pos:R:3:species:S:1\n0 0 0\n", 2),
             ("1\nProperties=pos:R:3:species:S:1\n \n", 2),
