@@ -697,6 +697,22 @@ fn a_file_that_cannot_be_replaced_is_written_in_place() {
     image::open(path.join("from.png")).expect("an image");
     assert_eq!(names(path), ["from.png", "scene.toml", "to.png"]);
 
+    // Where there is no room for it twice, it is whole beside its place.
+    let script = format!(
+        "mkdir room; unshare -m sh -c \"mount -t tmpfs -o size=2m tmpfs room && echo old > room/from.exr && \
+         echo old > room/to.exr && mount --bind room/from.exr room/to.exr && \
+         {spherule} render scene.toml --device cpu --size 400x300 --shade normals -o room/to.exr; \
+         echo \\$?; cp room/spherule-*.exr kept.exr\""
+    );
+    shell(path, &script).success().stdout("1\n").stderr(
+        contains("overwritten in part")
+            .and(contains("is whole in"))
+            .and(contains("No space left on device")),
+    );
+    image::open(path.join("kept.exr")).expect("an image");
+    fs::remove_file(path.join("kept.exr")).expect("it is there");
+    fs::remove_dir(path.join("room")).expect("it is empty");
+
     let sticky = path.join("sticky");
     fs::create_dir(&sticky).expect("a folder");
     fs::write(sticky.join("out.png"), "old").expect("a file");
