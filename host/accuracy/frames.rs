@@ -55,7 +55,9 @@ pub fn measure(
     };
     let pixels = u64::from(scene.width) * u64::from(scene.height);
     memory::require(
-        pixels * (1 + rungs.len() as u64) * size_of::<Pixel>() as u64,
+        pixels
+            .saturating_mul(1 + rungs.len() as u64)
+            .saturating_mul(size_of::<Pixel>() as u64),
         &format!("keeping an image of each precision of {pixels} pixels"),
     )?;
     let reference = render(scene, settings(Rung::Certified), &Device::Cpu, QUIET)?.image;
