@@ -93,6 +93,15 @@ macro_rules! operators {
                 }
             }
 
+            impl $operation for Four {
+                type Output = Self;
+
+                #[inline(always)]
+                fn $function(self, other: Self) -> Self {
+                    Self(self.0.$function(other.0))
+                }
+            }
+
             impl<S: Simd> $operation for Double16<S> {
                 type Output = Self;
 
@@ -266,21 +275,6 @@ impl FourMask {
     }
 }
 
-macro_rules! operators_of_four {
-    ($($operation:ident $function:ident),*) => {
-        $(impl $operation for Four {
-            type Output = Self;
-
-            #[inline(always)]
-            fn $function(self, other: Self) -> Self {
-                Self(self.0.$function(other.0))
-            }
-        })*
-    };
-}
-
-operators_of_four!(Add add, Sub sub, Mul mul, Div div);
-
 impl Neg for Four {
     type Output = Self;
 
@@ -399,7 +393,7 @@ mod tests {
         })
     }
 
-    /// One result for each operation, in the order of [`alone`].
+    /// One result for each operation.
     #[inline(always)]
     fn each<L: Lane>(a: L, b: L) -> [L; 13] {
         let one = a.splat(1.0);
