@@ -5,8 +5,8 @@
 
 use std::fmt::Write;
 
-use spherule::accuracy::random::Random;
 use spherule::kernel::glam::Vec3;
+use spherule::random::Random;
 
 fn main() {
     let mut random = Random::new(1);

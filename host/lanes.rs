@@ -368,8 +368,8 @@ mod tests {
     use spherule_kernel::precision::double;
 
     use super::*;
-    use crate::accuracy::random::Random;
     use crate::cpu::InstructionSet;
+    use crate::random::Random;
 
     /// Numbers at which arithmetic turns odd, and ordinary ones.
     fn numbers(random: &mut Random) -> [f32; LANES] {

@@ -8,26 +8,28 @@
 //! | module | holds |
 //! | --- | --- |
 //! | [`kernel`] | the device code and the types shared with it: `Sphere`, `Ray`, `Hit`, `Camera` |
-//! | [`scene`] | what is rendered: TOML scenes, molecules from PDB and XYZ files |
+//! | [`scene`] | what is rendered; it knows no file |
+//! | [`read`] | files: scenes in TOML, particles, images of the surroundings |
+//! | [`look`] | from particles to a world |
 //! | [`device`] | adapters, buffers, kernels, launches, and their errors |
-//! | [`mod@render`] | a scene on a device, GPU or CPU |
+//! | [`accel`] | building the tree of boxes around the spheres |
 //! | [`trace`] | rays by the million, without an image |
-//! | [`accuracy`] | how right the rungs of the ladder are, decided by an exact oracle |
-//! | [`mod@bench`] | how fast rays of every kind are |
+//! | [`mod@render`] | a scene on a device, GPU or CPU |
 //! | [`film`] | images: encoding, comparison |
 //! | `write` | outputs: checked before the work, written whole or not at all |
+//! | [`accuracy`] | how right the rungs of the ladder are, decided by an exact oracle |
+//! | [`mod@bench`] | how fast rays of every kind are |
 //! | [`error`] | [`Error`]: what can go wrong, and how to mend it |
-//! | [`threads`] | the pool of threads that work on the CPU is done by |
-//! | `memory` | memory of the host that may not be there |
+//! | [`cpu`], `lanes` | which vector instructions the CPU has, and vectors as the kernel's numbers |
+//! | [`threads`], `memory` | the pool of threads, and memory that may not be there |
 //! | [`kernel_module`] | the kernel's SPIR-V that this build embeds |
-//! | [`cpu`] | which vector instructions rays are traced with on the CPU |
-//! | `lanes` | vectors as the kernel's numbers |
-//! | `plural` | counts with their nouns |
-//! | `shown` | texts of unknown origin, as a terminal may show them |
+//! | [`random`], [`ulp`] | repeatable random numbers, distances between floats |
+//! | `plural`, `shown` | counts with their nouns, texts of unknown origin as a terminal may show them |
 //! | [`cli`] | the command `spherule` |
 
 #![deny(missing_docs)]
 
+pub mod accel;
 pub mod accuracy;
 pub mod bench;
 #[cfg(feature = "cli")]
@@ -38,13 +40,17 @@ pub mod error;
 pub mod film;
 pub mod kernel_module;
 mod lanes;
+pub mod look;
 mod memory;
 mod plural;
+pub mod random;
+pub mod read;
 pub mod render;
 pub mod scene;
 mod shown;
 pub mod threads;
 pub mod trace;
+pub mod ulp;
 pub(crate) mod write;
 
 pub use device::{Device, DeviceChoice, Gpu};

@@ -8,9 +8,10 @@ use common::{all_adapters, open, skips};
 use glam::Vec3;
 use spherule::device::GpuOptions;
 use spherule::film::compare::{Comparison, Tolerance};
-use spherule::kernel::integrate::luminance;
+use spherule::kernel::color::luminance;
 use spherule::kernel::{Effects, Material, Rung, Sphere};
-use spherule::render::paths::{EffectChoice, StoppedBy};
+use spherule::render::EffectChoice;
+use spherule::render::paths::StoppedBy;
 use spherule::render::{QUIET, Settings, render};
 use spherule::scene::limits::MAX_SAMPLES;
 use spherule::scene::surroundings::{EnvironmentImage, PointLight, Sun, Surroundings, Tonemap};
@@ -304,7 +305,7 @@ fn an_environment_is_read_and_seen_where_it_is() {
     ] {
         let text =
             format!("{text}[camera]\neye = [0, 0, 0]\ntarget = {target}\nvertical_fov = 1\n");
-        let scene = spherule::scene::toml_file::parse(&directory.path().join("s.toml"), text);
+        let scene = spherule::read::toml::parse(&directory.path().join("s.toml"), text);
         let image = on_cpu(&scene.expect("a scene"));
         assert_eq!(
             image.pixel(4, 4).expect("a pixel").color(),
@@ -316,7 +317,7 @@ fn an_environment_is_read_and_seen_where_it_is() {
         .save(directory.path().join("sky.png"))
         .expect("an image");
     let text = "[sky]\nimage = \"sky.png\"\n[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\n";
-    let refused = spherule::scene::toml_file::parse(&directory.path().join("s.toml"), text.into());
+    let refused = spherule::read::toml::parse(&directory.path().join("s.toml"), text.into());
     assert!(
         refused
             .expect_err("8 bits")
@@ -697,7 +698,7 @@ fn each_effect_is_called_for_by_its_key() {
     let base = "[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\n";
     let read = |text: &str| {
         let text = format!("{text}\n{base}");
-        spherule::scene::toml_file::parse(Path::new("test.toml"), text).expect("a scene")
+        spherule::read::toml::parse(Path::new("test.toml"), text).expect("a scene")
     };
     assert!(read("").effects().is_empty());
     let sky = "[sky]\nhorizon = [1, 1, 1]\n";

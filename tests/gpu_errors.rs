@@ -6,10 +6,10 @@ mod common;
 use std::time::Duration;
 
 use common::{all_adapters, gpus, noop_adapter, open, skips};
+use spherule::accel::Acceleration;
 use spherule::device::{Access, Device, DeviceChoice, Gpu, GpuOptions, Module};
 use spherule::kernel::{Hit, Ray, Rung, Shading, Sphere, spirv};
 use spherule::render::{QUIET, Settings, paths, render};
-use spherule::scene::tree::Acceleration;
 use spherule::trace::GpuTracer;
 use spherule::{Error, Scene, kernel_module, wgpu};
 
@@ -635,7 +635,7 @@ fn hits_of_another_tracers_batch_are_none() {
 fn light_paths_of_no_image_are_refused() {
     let mut scene = Scene::load("scenes/soft-light.toml").expect("a scene");
     (scene.width, scene.height) = (16, 9);
-    let effects = paths::EffectChoice::Auto;
+    let effects = spherule::render::EffectChoice::Auto;
     let plain = paths::Prepared::new(&scene, effects, Acceleration::Auto).expect("a scene");
     let settings = Settings {
         time_limit: Some(Duration::from_secs(1)),

@@ -4,11 +4,13 @@ mod common;
 
 use common::{gpus, skips};
 use glam::{UVec2, Vec3, Vec4};
-use spherule::accuracy::random::Random;
 use spherule::device::{Access, Gpu};
 use spherule::kernel::shading::shade;
-use spherule::kernel::{Camera, Hit, Launch, Material, Ray, Sphere, Surface, layout, nearest_hit};
+use spherule::kernel::{
+    Camera, Hit, Launch, Material, Ray, Sphere, Surface, nearest_hit, probe::layout,
+};
 use spherule::kernel_module;
+use spherule::random::Random;
 
 const COUNT: usize = 10_000;
 

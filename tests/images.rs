@@ -8,12 +8,12 @@ use std::path::PathBuf;
 
 use common::{all_adapters, gpus, open, skips};
 use glam::Vec3;
+use spherule::accel::Acceleration;
 use spherule::device::GpuOptions;
 use spherule::film::compare::{Comparison, Tolerance};
 use spherule::kernel::{Camera, Hit, Launch, Material, Pixel, Shading, Sphere};
 use spherule::render::pace::Pace;
 use spherule::render::{self, QUIET, Settings};
-use spherule::scene::tree::Acceleration;
 use spherule::scene::{View, World};
 use spherule::{Device, Image, Scene, wgpu};
 
@@ -348,7 +348,7 @@ fn every_pixel_is_written() {
                     gpu.upload("materials", &world.materials)
                         .expect("materials")
                         .binding(),
-                    gpu.upload("nodes", &[spherule::kernel::tree::Node::default()])
+                    gpu.upload("nodes", &[spherule::kernel::accel::node::Node::default()])
                         .expect("nodes")
                         .binding(),
                     pixels.binding(),

@@ -7,12 +7,13 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
 use spherule::Device;
+use spherule::accel::Acceleration;
 use spherule::device::GpuOptions;
 use spherule::kernel::{Rung, Shading};
-use spherule::render::paths::{EffectChoice, StoppedBy};
+use spherule::render::EffectChoice;
+use spherule::render::paths::StoppedBy;
 use spherule::render::{QUIET, Rendered, Settings, render};
 use spherule::scene::Scene;
-use spherule::scene::tree::Acceleration;
 
 /// A pass over this takes minutes of one thread: what is cut was cut within it.
 fn endless() -> Scene {

@@ -6,7 +6,7 @@
 use std::collections::{BTreeMap, HashSet};
 
 use spherule::device::Module;
-use spherule::kernel::{layout, spirv};
+use spherule::kernel::{probe::layout, spirv};
 
 #[cfg(feature = "compile-kernel")]
 #[test]

@@ -6,12 +6,12 @@ mod common;
 
 use common::{all_adapters, open, skips};
 use spherule::Device;
-use spherule::accuracy::canary::Canary;
 use spherule::accuracy::families::Family;
 use spherule::accuracy::measure::{Measured, intersect_all, intersect_on_gpu, judge};
-use spherule::accuracy::ulp::shown;
 use spherule::device::GpuOptions;
+use spherule::device::canary::Canary;
 use spherule::kernel::Rung;
+use spherule::ulp::shown;
 
 fn rays() -> usize {
     std::env::var("SPHERULE_RAYS")

@@ -4,13 +4,13 @@
 use glam::Vec3;
 use proptest::prelude::*;
 use spherule::accuracy::oracle::Intersection;
-use spherule::accuracy::ulp;
-use spherule::kernel::bounds::Line;
-use spherule::kernel::cone::{Cone, Sight};
-use spherule::kernel::frustum::Frustum;
+use spherule::kernel::cull::bounds::Line;
+use spherule::kernel::cull::cone::{Cone, Sight};
+use spherule::kernel::cull::frustum::Frustum;
 use spherule::kernel::glam::Vec2;
 use spherule::kernel::precision::intersect;
 use spherule::kernel::{Camera, Hit, Ray, Rung, Sphere};
+use spherule::ulp;
 
 /// A coordinate of the domain: anything up to 2²⁰, with small numbers as likely as large ones.
 fn coordinate() -> impl Strategy<Value = f32> {

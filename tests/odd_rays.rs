@@ -2,10 +2,10 @@
 //! there are.
 
 use glam::Vec3;
-use spherule::accuracy::random::Random;
-use spherule::kernel::nearest::nearest_hit_in;
+use spherule::accel::Acceleration;
+use spherule::kernel::accel::brute::nearest_hit_in;
 use spherule::kernel::{Hit, Ray, Rung, Sphere};
-use spherule::scene::tree::Acceleration;
+use spherule::random::Random;
 use spherule::trace::CpuTracer;
 
 /// Numbers at which arithmetic turns odd.

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use spherule::scene::toml_file::parse;
+use spherule::read::toml::parse;
 
 const README: &str = include_str!("../README.md");
 

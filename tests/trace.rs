@@ -2,6 +2,7 @@
 
 use glam::Vec3;
 use spherule::Scene;
+use spherule::accel::Acceleration;
 use spherule::accuracy::cases::catalogue;
 use spherule::accuracy::families::Family;
 use spherule::accuracy::oracle::Intersection;
@@ -9,13 +10,13 @@ use spherule::bench::rays::{Kind, RaySets};
 use spherule::bench::scenes;
 use spherule::bench::verify::verify;
 use spherule::device::{Device, GpuOptions};
-use spherule::kernel::nearest::nearest_hit_in;
-use spherule::kernel::tree::{Node, nearest_hit_in_tree};
+use spherule::kernel::accel::brute::nearest_hit_in;
+use spherule::kernel::accel::node::Node;
+use spherule::kernel::accel::walk::nearest_hit_in_tree;
 use spherule::kernel::{Material, Pixel, Ray, Rung, Shading, Sphere};
 use spherule::render::pace::Pace;
 use spherule::render::{QUIET, Settings, cpu, whole_image};
 use spherule::scene::World;
-use spherule::scene::tree::Acceleration;
 use spherule::trace::CpuTracer;
 
 mod common;

@@ -2,16 +2,19 @@
 //! `.ci/miri` runs it there. Elsewhere it takes no time.
 
 use glam::Vec3;
-use spherule::accuracy::random::Random;
+use spherule::accel::{Acceleration, build, build_still};
 use spherule::device::Device;
-use spherule::kernel::nearest::nearest_hit_in;
-use spherule::kernel::tree::{Tree, is_occluded_in_tree, nearest_hit_in_tree, work_in_tree};
+use spherule::kernel::accel::brute::nearest_hit_in;
+use spherule::kernel::accel::node::Tree;
+use spherule::kernel::accel::walk::{is_occluded_in_tree, nearest_hit_in_tree, work_in_tree};
 use spherule::kernel::{Effects, Hit, Material, Ray, Rung, Shading, Sphere};
+use spherule::look;
+use spherule::random::Random;
+use spherule::read::particles::{pdb, xyz};
+use spherule::read::toml;
 use spherule::render::{QUIET, render};
-use spherule::scene::molecule::{self, pdb, xyz};
 use spherule::scene::surroundings::{PointLight, Sun, Surroundings};
-use spherule::scene::tree::{Acceleration, grow, grow_still};
-use spherule::scene::{Scene, World, toml_file};
+use spherule::scene::{Scene, World};
 use spherule::trace::CpuTracer;
 
 fn world(random: &mut Random, count: usize) -> Vec<Sphere> {
@@ -51,7 +54,7 @@ fn trees_are_grown_and_walked() {
     for count in counts {
         let mut spheres = world(&mut random, count);
         spheres.extend([Sphere::new(Vec3::ONE, 0.5); 12]);
-        let tree = grow_still(&spheres, 1).expect("a tree");
+        let tree = build_still(&spheres, 1).expect("a tree");
         assert!(Tree::of(&tree.nodes).is_some());
         let sorted = tree.sort(&spheres);
         let rays = rays(&mut random, if cfg!(miri) { 8 } else { 64 });
@@ -86,8 +89,8 @@ fn trees_over_what_moves_are_grown() {
     let mut random = Random::new(4);
     let spheres = world(&mut random, 60);
     let velocities: Vec<Vec3> = (0..40).map(|_| random.vec3(-1.0, 1.0)).collect();
-    assert!(grow(&spheres, &velocities, (0.0, 1.0), 1).is_some());
-    assert!(grow(&spheres, &velocities, (0.0, f32::NAN), 1).is_none());
+    assert!(build(&spheres, &velocities, (0.0, 1.0), 1).is_some());
+    assert!(build(&spheres, &velocities, (0.0, f32::NAN), 1).is_none());
 }
 
 #[test]
@@ -153,9 +156,9 @@ fn files_are_read() {
     for at in 0..xyz_text.len() {
         let _ = xyz::parse(&xyz_text[..at]);
     }
-    assert_eq!(molecule::world(&atoms).spheres.len(), 2);
+    assert_eq!(look::world(&atoms).spheres.len(), 2);
     let scene_text = "[image]\nwidth = 4\n[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\n";
     for at in (0..=scene_text.len()).step_by(if cfg!(miri) { 7 } else { 1 }) {
-        let _ = toml_file::parse("scene.toml".as_ref(), scene_text[..at].to_owned());
+        let _ = toml::parse("scene.toml".as_ref(), scene_text[..at].to_owned());
     }
 }

@@ -3,9 +3,9 @@
 
 use bytemuck::Pod;
 use rayon::prelude::*;
-use spherule_kernel::nearest::{is_occluded, nearest_hit_in};
-use spherule_kernel::optics::{Fresnel, Incidence};
-use spherule_kernel::walk::{Walk, walk_inside};
+use spherule_kernel::accel::brute::{is_occluded, nearest_hit_in};
+use spherule_kernel::material::optics::{Fresnel, Incidence};
+use spherule_kernel::probe::glass_walk::{Walk, walk_inside};
 use spherule_kernel::{Hit, Ray, Rung, Sphere, Surface};
 
 use crate::device::{Access, Binding, Device, Gpu};

@@ -10,10 +10,10 @@ use spherule_kernel::{Hit, Ray, Rung, Sphere, Surface};
 
 use super::measure::intersect_all;
 use super::oracle::Intersection;
-use super::random::Random;
-use super::ulp;
 use crate::device::Device;
 use crate::error::Result;
+use crate::random::Random;
+use crate::ulp;
 
 /// A ray and a sphere, and what must come out.
 #[derive(Clone, Copy, Debug)]

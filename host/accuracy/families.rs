@@ -4,7 +4,7 @@ use glam::{DVec3, Vec3};
 use serde::Serialize;
 use spherule_kernel::{Ray, Sphere};
 
-use super::random::Random;
+use crate::random::Random;
 
 /// A family of rays and spheres.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]

@@ -8,7 +8,7 @@ use crate::error::Result;
 use crate::film::compare::{Comparison, Tolerance};
 use crate::film::flip::mean_flip;
 use crate::memory;
-use crate::render::paths::EffectChoice;
+use crate::render::EffectChoice;
 use crate::render::{Progress, QUIET, Settings, render};
 use crate::scene::Scene;
 

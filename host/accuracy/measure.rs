@@ -8,13 +8,14 @@ use spherule_kernel::precision::certified::intersect_with_stage;
 use spherule_kernel::precision::intersect;
 use spherule_kernel::{Hit, Ray, Rung, Sphere, Surface};
 
-use super::canary::Canary;
 use super::oracle::Intersection;
-use super::random::Random;
-use super::{screen, ulp};
+use super::screen;
+use crate::device::canary::Canary;
 use crate::device::{Access, Device, Gpu};
 use crate::error::Result;
 use crate::kernel_module;
+use crate::random::Random;
+use crate::ulp;
 
 /// What was measured.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -418,7 +419,7 @@ mod tests {
                 let quadratic = Quadratic::of(*sphere, ray);
                 if quadratic.discriminant.high >= 0.0 {
                     let (near, far) = quadratic.roots();
-                    spherule_kernel::precision::choose_root(far, near, ray)
+                    spherule_kernel::precision::root::choose_root(far, near, ray)
                 } else {
                     Hit::NONE_T
                 }

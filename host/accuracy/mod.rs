@@ -6,7 +6,6 @@
 //! | [`cases`] | the hard cases, by number and name |
 //! | [`scene_cases`] | those of them that concern more than one ray and one sphere |
 //! | [`ask`] | the kernel's questions, put to a device |
-//! | [`canary`] | what a device does to the arithmetic that the upper rungs need |
 //! | [`families`] | families of rays, each hard in its own way |
 //! | [`screen`] | 64-bit arithmetic with an error bound, to spare the oracle most of its work |
 //! | [`measure`] | how far a rung's answers are from the truth |
@@ -16,11 +15,8 @@
 //! | [`samples`] | the error of an image as its samples grow |
 //! | [`price`] | what a rung costs in time |
 //! | [`report`] | accuracy against time, as a page |
-//! | [`random`] | repeatable random numbers |
-//! | [`ulp`] | distances between floats in units in the last place |
 
 pub mod ask;
-pub mod canary;
 pub mod cases;
 pub mod choose;
 pub mod families;
@@ -28,10 +24,8 @@ pub mod frames;
 pub mod measure;
 pub mod oracle;
 pub mod price;
-pub mod random;
 pub mod report;
 pub mod samples;
 pub mod scene_cases;
 pub mod scene_rays;
 pub mod screen;
-pub mod ulp;

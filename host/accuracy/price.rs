@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use serde::Serialize;
-use spherule_kernel::nearest::nearest_hit_in;
+use spherule_kernel::accel::brute::nearest_hit_in;
 use spherule_kernel::{Hit, Ray, Rung, Sphere};
 
 use crate::device::{Access, Device};

@@ -7,7 +7,7 @@ use super::frames::Frame;
 use super::measure::Measured;
 use super::price::Price;
 use super::samples::Step;
-use super::ulp;
+use crate::ulp;
 
 /// What the page says of one rung on one family.
 #[derive(Clone, Copy, Debug)]

@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use serde::Serialize;
 use spherule_kernel::Rung;
-use spherule_kernel::integrate::luminance;
+use spherule_kernel::color::luminance;
 
 use crate::device::Device;
 use crate::error::Result;

@@ -2,7 +2,7 @@
 //! and what a scene file may say. Numbers are those of the catalogue, as in [`super::cases`].
 
 use glam::Vec3;
-use spherule_kernel::optics::Incidence;
+use spherule_kernel::material::optics::Incidence;
 use spherule_kernel::{Hit, Ray, Rung, Sphere};
 
 use super::ask;
@@ -10,10 +10,10 @@ use super::cases::{ALL, CERTIFIED, UPPER, Verdict};
 use super::families::Family;
 use super::measure::intersect_all;
 use super::oracle;
-use super::random::Random;
 use crate::device::Device;
 use crate::error::Result;
-use crate::scene::toml_file;
+use crate::random::Random;
+use crate::read::toml;
 
 /// A hard case that is judged by a function of its own.
 #[derive(Clone, Copy, Debug)]
@@ -107,7 +107,7 @@ const AHEAD: (Vec3, Vec3) = (Vec3::new(0.0, 0.0, 5.0), Vec3::NEG_Z);
 
 fn negative_radius(_: &Device, _: Rung) -> Result<Option<String>> {
     let text = "[[sphere]]\ncenter = [0, 0, 0]\nradius = -1\n";
-    let read = toml_file::parse(std::path::Path::new("negative.toml"), text.into());
+    let read = toml::parse(std::path::Path::new("negative.toml"), text.into());
     Ok(read.is_ok().then(|| "a scene was read".into()))
 }
 

@@ -3,11 +3,11 @@
 
 use glam::UVec2;
 use rayon::prelude::*;
-use spherule_kernel::nearest::nearest_hit_in;
+use spherule_kernel::accel::brute::nearest_hit_in;
 use spherule_kernel::{Ray, Rung, Sphere};
 
-use super::random::Random;
 use crate::error::Result;
+use crate::random::Random;
 use crate::render::whole_image;
 use crate::scene::Scene;
 

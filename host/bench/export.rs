@@ -4,7 +4,7 @@
 //! | --- | --- |
 //! | `meta.json` | names, counts, the size of the image, the camera |
 //! | `spheres.f32` | x, y, z, r of each sphere |
-//! | `nodes.u32` | the nodes of the tree, 20 numbers each ([`Node`](spherule_kernel::tree::Node)); empty without one |
+//! | `nodes.u32` | the nodes of the tree, 20 numbers each ([`Node`](spherule_kernel::accel::node::Node)); empty without one |
 //! | `order.u32` | for each sphere in the order of the tree's leaves, its index in `spheres.f32` |
 //! | `KIND.f32` | of each ray its origin, `t_min`, direction, `t_max` |
 //! | `KIND.hits` | of each ray t and the sphere's index (`u32::MAX` for none), or 1 or 0 where any hit would do |

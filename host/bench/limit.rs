@@ -13,11 +13,10 @@ use fearless_simd::{Level, Simd, dispatch};
 use glam::Vec4;
 use rayon::prelude::*;
 use serde::Serialize;
-use spherule_kernel::throughput::MULTIPLICATIONS;
-use spherule_kernel::tree::Node;
+use spherule_kernel::accel::node::Node;
+use spherule_kernel::probe::throughput::MULTIPLICATIONS;
 use spherule_kernel::{Hit, Pixel, Ray};
 
-use super::measure::WARM_UP;
 use super::rays::Kind;
 use crate::cpu::InstructionSet;
 use crate::device::{Access, Device, Gpu};
@@ -25,6 +24,8 @@ use crate::error::Result;
 use crate::kernel_module;
 use crate::lanes::{LANES, Single16};
 
+/// How long a GPU is kept busy before anything is timed.
+pub(super) const WARM_UP: Duration = Duration::from_secs(2);
 /// Operations of a test. A box: six multiply-adds, six comparisons for the largest and the smallest, one of these two. A
 /// sphere, by its discriminant: three differences, three products for each of o·d and o·o, one for c, two for the
 /// discriminant, one comparison.

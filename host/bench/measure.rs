@@ -5,14 +5,14 @@ use std::time::{Duration, Instant};
 use serde::Serialize;
 use spherule_kernel::{Hit, Pixel, Rung, Shading};
 
-use super::limit::Limit;
+use super::limit::{Limit, WARM_UP};
 use super::rays::{Kind, RaySets};
+use crate::accel::{self, Acceleration};
 use crate::device::Device;
 use crate::error::Result;
 use crate::film;
 use crate::render::{self, QUIET, Settings, whole_image};
 use crate::scene::Scene;
-use crate::scene::tree::{self, Acceleration};
 use crate::trace::{CpuTracer, GpuTracer};
 
 /// What was measured of one world.
@@ -102,9 +102,6 @@ impl Speed {
     }
 }
 
-/// How long a GPU is kept busy before anything is timed.
-pub(super) const WARM_UP: Duration = Duration::from_secs(2);
-
 /// The median, and half of the range.
 fn median(times: &mut [f64]) -> (f64, f64) {
     times.sort_by(f64::total_cmp);
@@ -142,7 +139,7 @@ pub fn measure(
     let mut builds = Vec::new();
     for _ in 0..plan.rounds.min(3) {
         let started = Instant::now();
-        let tree = tree::grow_still(spheres, plan.acceleration.min_spheres(tree::MIN_SPHERES));
+        let tree = accel::build_still(spheres, plan.acceleration.min_spheres(accel::MIN_SPHERES));
         if tree.is_some() {
             builds.push(started.elapsed().as_secs_f64());
         }

@@ -5,9 +5,9 @@ use rayon::prelude::*;
 use serde::Serialize;
 use spherule_kernel::{Hit, Pixel, Ray, Rung, Sphere, Surface};
 
-use crate::accuracy::random::Random;
 use crate::error::Result;
 use crate::memory;
+use crate::random::Random;
 use crate::render::whole_image;
 use crate::scene::Scene;
 use crate::trace::CpuTracer;

@@ -3,13 +3,14 @@
 use std::path::{Path, PathBuf};
 
 use glam::Vec3;
-use spherule_kernel::tree::Node;
+use spherule_kernel::accel::node::Node;
 use spherule_kernel::{Material, Sphere};
 
-use crate::accuracy::random::Random;
 use crate::error::{Result, SceneError, nearest};
 use crate::memory;
-use crate::scene::{Scene, View, World, formats, toml_file};
+use crate::random::Random;
+use crate::read::{self, toml};
+use crate::scene::{Scene, View, World};
 
 /// What a sphere takes while the tree over it is built, by the largest resident set of `bench --scene R10M`.
 const BYTES_PER_SPHERE: u64 = 300;
@@ -148,7 +149,7 @@ impl BenchScene {
             },
             Self::S500 => {
                 let text = include_str!("../../scenes/one-weekend.toml");
-                toml_file::parse("one-weekend.toml".as_ref(), text.into())?
+                toml::parse("one-weekend.toml".as_ref(), text.into())?
             }
             Self::Uniform(count) => cube(uniform(count), View::straight()),
             Self::Lattice => cube(lattice(), View::straight()),
@@ -207,7 +208,7 @@ impl Source {
             format!(
                 "{likely}give one of {}, R and another number of spheres such as R300k, or a {}",
                 names.join(", "),
-                formats::inputs()
+                read::inputs()
             ),
         )
         .into())

@@ -4,10 +4,10 @@ use serde::Serialize;
 use spherule_kernel::{Hit, Ray, Rung};
 
 use super::rays::{Kind, RaySets};
+use crate::accel::Acceleration;
 use crate::device::{Device, Gpu};
 use crate::error::Result;
 use crate::scene::Scene;
-use crate::scene::tree::Acceleration;
 use crate::trace::{CpuTracer, GpuTracer};
 
 /// What was compared on one rung.

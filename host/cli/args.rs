@@ -8,14 +8,14 @@ use clap::builder::{OsStringValueParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use spherule_kernel::{Effects, Rung, Shading};
 
+use crate::accel::Acceleration;
 use crate::accuracy::choose::DEFAULT_TOLERANCE;
 use crate::accuracy::families::Family;
 use crate::device::DeviceChoice;
 use crate::error::nearest;
-use crate::render::paths::EffectChoice;
-use crate::scene::formats;
+use crate::read;
+use crate::render::EffectChoice;
 use crate::scene::limits::{MAX_BOUNCES, MAX_IMAGE_SIDE, MAX_SAMPLES};
-use crate::scene::tree::Acceleration;
 use crate::shown::shown;
 use crate::write::Format;
 
@@ -51,7 +51,7 @@ pub(super) enum Command {
     SPHERULE_LOG=debug logs what happens; RAYON_NUM_THREADS=N sets the number of the CPU's threads, \
     SPHERULE_CPU=plain|avx2|avx512 their vector instructions.")]
 pub(super) struct RenderArguments {
-    #[arg(help = format!("The {}", formats::inputs()))]
+    #[arg(help = format!("The {}", read::inputs()))]
     pub(super) input: PathBuf,
 
     /// The image to write: 8-bit PNG, or linear 32-bit float EXR [default: the input's name with .png, in the current directory]
@@ -177,7 +177,7 @@ pub(super) struct AccuracyArguments {
 #[derive(Debug, Args)]
 #[command(allow_negative_numbers = true)]
 pub(super) struct ExplainArguments {
-    #[arg(help = format!("The {}", formats::inputs()))]
+    #[arg(help = format!("The {}", read::inputs()))]
     pub(super) input: PathBuf,
 
     /// What to measure: auto (a real GPU, else the CPU), gpu, cpu, or a part of an adapter's name
@@ -222,7 +222,7 @@ pub(super) struct BenchArguments {
 
     #[arg(long, value_name = "NAME|FILE", help = format!(
         "Measure this scene only: a name, or a {}; may be given again [default: all but R10M]",
-        formats::inputs()
+        read::inputs()
     ))]
     pub(super) scene: Vec<OsString>,
 
@@ -333,7 +333,7 @@ fn subject(text: OsString) -> Result<Subject, String> {
                 shown(text),
                 did_you_mean(text, &names),
                 names.join(", "),
-                formats::inputs()
+                read::inputs()
             ))
         }
     }

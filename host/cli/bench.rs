@@ -8,6 +8,7 @@ use serde::Serialize;
 
 use super::args::BenchArguments;
 use super::{note, print, write_json};
+use crate::accel::Acceleration;
 use crate::bench::export::{self, export};
 use crate::bench::limit::Limit;
 use crate::bench::measure::{Measured, Plan, Speed, measure};
@@ -17,7 +18,6 @@ use crate::bench::verify::{Verified, verify};
 use crate::device::Device;
 use crate::error::Result;
 use crate::scene::Scene;
-use crate::scene::tree::Acceleration;
 use crate::shown::shown_path;
 use crate::trace::CpuTracer;
 use crate::write::Output;

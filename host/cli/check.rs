@@ -8,12 +8,12 @@ use spherule_kernel::Rung;
 
 use super::args::CheckArguments;
 use super::write_json;
-use crate::accuracy::canary::{Canary, Share};
 use crate::accuracy::cases::{Verdict, catalogue};
 use crate::accuracy::scene_cases::SCENE_CASES;
-use crate::accuracy::ulp;
 use crate::device::Device;
+use crate::device::canary::{Canary, Share};
 use crate::error::Result;
+use crate::ulp;
 use crate::write::Output;
 
 #[derive(Debug, Serialize)]

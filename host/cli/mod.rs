@@ -258,7 +258,7 @@ fn log_filter(wish: &str, quiet: &Targets) -> Result<Targets, String> {
 /// instead.
 fn set_panic_hook() {
     std::panic::set_hook(Box::new(|panic| {
-        if !crate::device::is_catching() && !crate::scene::environment::is_decoding() {
+        if !crate::device::is_catching() && !crate::read::environment::is_decoding() {
             let _ = writeln!(
                 std::io::stderr(),
                 "spherule: internal error, please report it: {panic}"

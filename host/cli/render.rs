@@ -13,15 +13,15 @@ use super::interrupt::{self, Graceful};
 use super::precision::choose_rung;
 use super::progress::Bar;
 use super::{note, write_json};
+use crate::accel::Acceleration;
 use crate::device::{Device, DeviceChoice};
 use crate::error::{Error, Result};
 use crate::film::compare::{Comparison, Tolerance};
 use crate::plural::count_of;
+use crate::read::text::uncompressed;
 use crate::render::paths::{Reached, StoppedBy};
 use crate::render::{Rendered, Settings, estimate, render};
 use crate::scene::Scene;
-use crate::scene::formats;
-use crate::scene::tree::Acceleration;
 use crate::shown::shown_path;
 use crate::write::same::{refuse_clashes, refuse_inputs};
 use crate::write::{Format, Output, Room};
@@ -391,7 +391,7 @@ fn check(
 
 /// The input's name with `.png`, in the current directory.
 fn default_output(input: &Path) -> PathBuf {
-    let input = formats::uncompressed(input);
+    let input = uncompressed(input);
     let mut name = input.file_stem().unwrap_or(input.as_os_str()).to_owned();
     name.push(".png");
     name.into()

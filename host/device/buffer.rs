@@ -88,3 +88,14 @@ impl Owner {
         Self(NEXT.fetch_add(1, Ordering::Relaxed))
     }
 }
+
+/// How a kernel uses a buffer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Access {
+    /// A small constant, in uniform memory.
+    Uniform,
+    /// Storage that the kernel only reads.
+    Read,
+    /// Storage that the kernel reads and writes.
+    ReadWrite,
+}

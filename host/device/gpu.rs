@@ -16,14 +16,16 @@
 use std::borrow::Cow;
 use std::collections::HashMap;
 use std::hash::{DefaultHasher, Hash, Hasher};
-use std::sync::{Mutex, PoisonError, mpsc};
+use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use bytemuck::Pod;
 
 use super::adapter::{self, DeviceChoice};
-use super::buffer::{Binding, Buffer, Owner};
+use super::buffer::{Access, Binding, Buffer, Owner};
 use super::errors::{Watch, caught, one_line};
+use super::kernel::{Kernel, LaunchTime};
+use super::mapping::{LATE, map};
 use super::spirv::Module;
 use super::timer::Timer;
 use crate::error::{Error, Result};
@@ -48,58 +50,6 @@ impl Default for GpuOptions {
             through_naga: false,
             timeout: Duration::from_secs(120),
         }
-    }
-}
-
-/// How a kernel uses a buffer.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Access {
-    /// A small constant, in uniform memory.
-    Uniform,
-    /// Storage that the kernel only reads.
-    Read,
-    /// Storage that the kernel reads and writes.
-    ReadWrite,
-}
-
-/// An entry point, compiled by the driver. Copies share what was compiled.
-#[derive(Clone, Debug)]
-pub struct Kernel {
-    name: String,
-    pipeline: wgpu::ComputePipeline,
-    layout: wgpu::BindGroupLayout,
-    workgroup_size: [u32; 3],
-    owner: Owner,
-}
-
-impl Kernel {
-    /// Threads in a workgroup along x, y and z.
-    #[must_use]
-    pub fn workgroup_size(&self) -> [u32; 3] {
-        self.workgroup_size
-    }
-
-    /// The number of workgroups that cover `threads` threads along x, y and z.
-    #[must_use]
-    pub fn workgroups_for(&self, threads: [u32; 3]) -> [u32; 3] {
-        [0, 1, 2].map(|axis| threads[axis].div_ceil(self.workgroup_size[axis]))
-    }
-}
-
-/// How long a launch took.
-#[derive(Clone, Copy, Debug)]
-pub struct LaunchTime {
-    /// On the device, between timestamps; `None` where the device has none.
-    pub device: Option<Duration>,
-    /// On the host, from submitting to knowing that it is done.
-    pub host: Duration,
-}
-
-impl LaunchTime {
-    /// The device's own time where it is known, else the host's.
-    #[must_use]
-    pub fn best(&self) -> Duration {
-        self.device.unwrap_or(self.host)
     }
 }
 
@@ -827,18 +777,3 @@ fn check_bindings(module: &Module, said: &[Access]) -> Result<(), String> {
 /// Memory of the host that a device's buffers are read through.
 #[derive(Debug)]
 pub(crate) struct Staging(wgpu::Buffer);
-
-/// How long a mapping may be late behind what it waits for.
-pub(super) const LATE: Duration = Duration::from_secs(5);
-
-/// Starts mapping a whole buffer for reading; the channel tells when it is mapped.
-pub(super) fn map(
-    buffer: &wgpu::Buffer,
-) -> mpsc::Receiver<std::result::Result<(), wgpu::BufferAsyncError>> {
-    let (sender, receiver) = mpsc::channel();
-    buffer.map_async(wgpu::MapMode::Read, .., move |result| {
-        // The receiver is gone only where waiting failed, and then nobody wants to know.
-        let _ = sender.send(result);
-    });
-    receiver
-}

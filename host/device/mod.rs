@@ -4,16 +4,22 @@
 //! | --- | --- |
 //! | [`adapter`] | the list of adapters, and the choice between them |
 //! | [`gpu`] | [`Gpu`]: buffers, kernels and launches on one adapter |
+//! | [`kernel`] | [`Kernel`]: an entry point that the driver compiled |
+//! | `mapping`, `timer` | memory that is mapped for the host to read, and how long a launch took |
 //! | [`spirv`] | [`Module`]: SPIR-V, checked and specialised |
 //! | [`buffer`] | [`Buffer`]: device memory |
+//! | [`canary`] | what a device does to the arithmetic that the upper rungs need |
 //!
 //! Nothing in here knows of scenes or images. A program with kernels of its own uses it as it
 //! is: see `examples/own-kernel`.
 
 pub mod adapter;
 pub mod buffer;
+pub mod canary;
 mod errors;
 pub mod gpu;
+pub mod kernel;
+mod mapping;
 pub mod spirv;
 mod timer;
 
@@ -22,10 +28,11 @@ use std::time::Instant;
 use crate::error::Result;
 use crate::plural::count_of;
 pub use adapter::{AdapterReport, DeviceChoice, list_adapters};
-pub use buffer::{Binding, Buffer};
+pub use buffer::{Access, Binding, Buffer};
 pub use errors::is_catching;
 pub(crate) use gpu::Staging;
-pub use gpu::{Access, Gpu, GpuOptions, Kernel, LaunchTime};
+pub use gpu::{Gpu, GpuOptions};
+pub use kernel::{Kernel, LaunchTime};
 pub use spirv::Module;
 
 /// What renders: the CPU, or a GPU.

@@ -7,7 +7,7 @@
 use std::collections::{HashMap, HashSet};
 use std::fmt;
 
-use super::gpu::Access;
+use super::buffer::Access;
 use crate::error::{Error, Result};
 
 const MAGIC: u32 = 0x0723_0203;

@@ -3,7 +3,7 @@
 use std::sync::mpsc::Receiver;
 use std::time::Duration;
 
-use super::gpu::map;
+use super::mapping::map;
 
 /// Two timestamps around a compute pass.
 #[derive(Debug)]

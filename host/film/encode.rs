@@ -4,7 +4,7 @@ use std::sync::LazyLock;
 
 use glam::Vec3;
 use rayon::prelude::*;
-use spherule_kernel::integrate::luminance;
+use spherule_kernel::color::luminance;
 use spherule_kernel::{Pixel, Shading};
 
 use super::Image;
@@ -190,6 +190,16 @@ pub fn srgb(linear: f32) -> f32 {
         12.92 * linear
     } else {
         1.055 * linear.powf(1.0 / 2.4) - 0.055
+    }
+}
+
+/// From sRGB to linear Rec. 709 (IEC 61966-2-1), the inverse of [`srgb`].
+#[must_use]
+pub fn from_srgb(encoded: f32) -> f32 {
+    if encoded <= 0.040_45 {
+        encoded / 12.92
+    } else {
+        ((encoded + 0.055) / 1.055).powf(2.4)
     }
 }
 

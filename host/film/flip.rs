@@ -9,7 +9,7 @@
 use rayon::prelude::*;
 
 use super::Image;
-use super::encode::Encoder;
+use super::encode::{Encoder, from_srgb};
 
 /// Pixels in a degree of the visual field: a 0.7 m wide 3840-pixel screen seen from 0.7 m, the
 /// authors' own choice.
@@ -198,14 +198,6 @@ fn filter(plane: &[f32], width: usize, along_x: &[f64], along_y: &[f64]) -> Vec<
     pass(&pass(plane, along_x, true), along_y, false)
 }
 
-fn from_srgb(encoded: f32) -> f32 {
-    if encoded <= 0.040_45 {
-        encoded / 12.92
-    } else {
-        ((encoded + 0.055) / 1.055).powf(2.4)
-    }
-}
-
 /// Linear Rec. 709 to CIE XYZ, as fractions of the white point D65.
 fn to_xyz([r, g, b]: [f32; 3]) -> [f32; 3] {
     let rows = RGB_TO_XYZ.map(|row| row[0] * r + row[1] * g + row[2] * b);
@@ -268,7 +260,7 @@ fn difference(a: [f32; 3], b: [f32; 3]) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::accuracy::random::Random;
+    use crate::random::Random;
     use glam::Vec3;
     use spherule_kernel::{Pixel, Shading};
 

@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use serde::Serialize;
 
-use super::paths::EffectChoice;
+use super::settings::EffectChoice;
 use super::{Progress, Settings, render};
 use crate::device::Device;
 use crate::error::Result;

@@ -9,13 +9,14 @@ use glam::UVec2;
 use rayon::prelude::*;
 use spherule_kernel::{Launch, Pixel, Rung, Shading};
 
+use super::launch::{check_launch, check_pixels};
 use super::packet::{self, Frusta, Packet, SIDE};
-use super::{Progress, Settings, check_launch, check_pixels};
+use super::{Progress, Settings};
+use crate::accel::{self, Acceleration, Nodes};
 use crate::cpu::InstructionSet;
 use crate::error::Result;
 use crate::film;
 use crate::scene::World;
-use crate::scene::tree::{self, Acceleration, Nodes};
 
 /// From how many spheres on a tree pays for squares of camera rays: 8 with AVX-512.
 const MIN_SPHERES: usize = 12;
@@ -35,7 +36,7 @@ impl<'a> Prepared<'a> {
     /// Grows the tree.
     #[must_use]
     pub fn new(world: &'a World, acceleration: Acceleration) -> Self {
-        match tree::grow_still(&world.spheres, acceleration.min_spheres(MIN_SPHERES)) {
+        match accel::build_still(&world.spheres, acceleration.min_spheres(MIN_SPHERES)) {
             Some(tree) => Self {
                 world: Cow::Owned(tree.sort_world(world)),
                 nodes: tree.nodes,

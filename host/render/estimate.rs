@@ -9,7 +9,7 @@ use std::time::Duration;
 
 use spherule_kernel::Shading;
 
-use crate::render::paths::EffectChoice;
+use crate::render::EffectChoice;
 use crate::scene::Scene;
 
 /// What opening a GPU takes at least, and some milliseconds for bringing the image back.

@@ -5,20 +5,21 @@ use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use glam::UVec2;
+use spherule_kernel::accel::node::Node;
 use spherule_kernel::film::TILE;
-use spherule_kernel::tree::Node;
 use spherule_kernel::{Launch, Material, Pixel, Shading, Sphere};
 
+use super::launch::check_whole;
 use super::pace::Pace;
 use super::tiles::Tiles;
-use super::{Progress, QUIET, Settings, Timings, check_whole};
-use crate::accuracy::canary::Canary;
+use super::{Progress, QUIET, Settings, Timings};
+use crate::accel::{self, BuiltTree};
+use crate::device::canary::Canary;
 use crate::device::{Access, Buffer, Gpu, Kernel, Staging};
 use crate::error::{Error, Result};
 use crate::film;
 use crate::kernel_module;
 use crate::scene::World;
-use crate::scene::tree::{self, Tree};
 
 /// From how many spheres on a tree is grown. Where they lie evenly, lists for each tile are up to four times as fast and stay ahead up to
 /// 30,000; where most lie in a few tiles, a tree is ahead long before, and at 5,000 six times as fast.
@@ -114,9 +115,9 @@ impl Prepared {
         // All have trees, or none has.
         let grow = |run: &Range<usize>| {
             let spheres = &world.spheres[run.clone()];
-            tree::grow_still(spheres, settings.acceleration.min_spheres(MIN_FOR_TREE))
+            accel::build_still(spheres, settings.acceleration.min_spheres(MIN_FOR_TREE))
         };
-        let trees: Option<Vec<Tree>> = runs.iter().map(grow).collect();
+        let trees: Option<Vec<BuiltTree>> = runs.iter().map(grow).collect();
         let parts = runs.iter().enumerate().map(|(index, run)| {
             let spheres = &world.spheres[run.clone()];
             // The kernel has a material for spheres that have none.

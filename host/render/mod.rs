@@ -17,9 +17,13 @@ pub mod cpu;
 pub mod estimate;
 pub mod fit;
 pub mod gpu;
+mod launch;
 pub mod pace;
 mod packet;
 pub mod paths;
+mod rendered;
+mod room;
+mod settings;
 mod tiles;
 
 use std::ops::ControlFlow;
@@ -27,108 +31,17 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use glam::Vec3;
-use spherule_kernel::{Camera, Hit, Launch, PathLaunch, Pixel, Rung, Shading};
+use spherule_kernel::{Hit, Pixel, Shading};
 
 use crate::device::Device;
-use crate::error::{Error, Result, SceneError};
+use crate::error::Result;
 use crate::film::Image;
 use crate::memory;
-use crate::plural::count_of;
 use crate::scene::Scene;
-use crate::scene::tree::{self, Acceleration};
-use paths::{EffectChoice, Reached, StoppedBy};
-
-/// What is fixed before the kernel is compiled, on the GPU and on the CPU.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Settings {
-    /// What the image shows of a hit.
-    pub shading: Shading,
-    /// How rays are intersected with spheres.
-    pub rung: Rung,
-    /// Whether spheres stand in a tree.
-    pub acceleration: Acceleration,
-    /// Which effects the pipeline holds; only [`Shading::Lit`] shows any.
-    pub effects: EffectChoice,
-    /// Stops after this time of tracing, give or take a launch on a GPU.
-    pub time_limit: Option<Duration>,
-    /// Stops taking samples when [`Reached::noise`](paths::Reached::noise) is as low as this.
-    pub noise: Option<f64>,
-}
-
-impl From<Shading> for Settings {
-    fn from(shading: Shading) -> Self {
-        Self {
-            shading,
-            ..Self::default()
-        }
-    }
-}
-
-impl From<(Shading, Rung)> for Settings {
-    fn from((shading, rung): (Shading, Rung)) -> Self {
-        Self {
-            shading,
-            rung,
-            ..Self::default()
-        }
-    }
-}
-
-/// Memory for all that is small, in bytes.
-const MARGIN: u64 = 4 << 20;
-/// What a texel of the surroundings takes at most while tables are made of it: its probability, its share of a vector that grows, and the
-/// table.
-const BYTES_A_TEXEL: u64 = 64;
-
-/// Told how far a render is, a number from 0 to 1, and asked whether it goes on.
-///
-/// It is called from any thread, every few milliseconds of each on a CPU and after each launch on a GPU, and so must be quick. Where it
-/// breaks off, the render ends with what it has: see [`Rendered::is_complete`].
-pub type Progress<'a> = &'a (dyn Fn(f64) -> ControlFlow<()> + Sync);
-
-/// Ignores progress, and always goes on.
-pub const QUIET: Progress<'static> = &|_| ControlFlow::Continue(());
-
-/// An image, and what it took.
-#[derive(Debug)]
-pub struct Rendered {
-    /// The image. Pixels that no ray was traced for are transparent, and black where nothing shows that;
-    /// where a time limit left them out of an image of samples, they show a coarse preview instead.
-    pub image: Image,
-    /// How many pixels a ray was traced for: all, unless the render was stopped early.
-    pub traced: u64,
-    /// How many camera rays were traced for the image: one for each sample of each pixel, and none for a preview. Light paths go
-    /// on from there.
-    pub rays: u64,
-    /// What it took.
-    pub timings: Timings,
-    /// How far it came, where there is more than one ray a pixel.
-    pub reached: Option<Reached>,
-}
-
-impl Rendered {
-    /// Whether each pixel was traced, and nothing broke off its samples: a time limit or a noise target that was reached
-    /// did not.
-    #[must_use]
-    pub fn is_complete(&self) -> bool {
-        let pixels = u64::from(self.image.width()) * u64::from(self.image.height());
-        let is_broken_off = |reached: Reached| reached.stopped_by == StoppedBy::Interrupted;
-        self.traced == pixels && !self.reached.is_some_and(is_broken_off)
-    }
-}
-
-/// Where the time of a render went.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Timings {
-    /// Growing the tree; on a GPU, compiling the kernel and uploading the world, too.
-    pub setup: Duration,
-    /// Of that, compiling the kernel for these effects and this rung.
-    pub compile: Duration,
-    /// Tracing: the device's own time where it can be measured, else the host's.
-    pub trace: Duration,
-    /// Copying the image back; zero on the CPU.
-    pub readback: Duration,
-}
+pub use launch::whole_image;
+pub use rendered::{Rendered, Timings};
+use room::memory_for;
+pub use settings::{EffectChoice, Progress, QUIET, Settings};
 
 /// Renders `scene` on `device`.
 ///
@@ -232,30 +145,6 @@ fn within<'a>(
     }
 }
 
-/// Whether there is memory for the image of `scene`, of which each pixel takes so many bytes on the host, and for the tree: what is
-/// computed is not to be lost for want of it.
-///
-/// # Errors
-///
-/// [`Error::OutOfHostMemory`] with the sum.
-fn memory_for(scene: &Scene, bytes_a_pixel: u64) -> Result<()> {
-    let pixels = u64::from(scene.width) * u64::from(scene.height);
-    let spheres = scene.world.spheres.len() as u64;
-    let image = scene.sky.as_ref().and_then(|sky| sky.image.as_ref());
-    let texels = image.map_or(0, |image| image.texels.len() as u64);
-    memory::check(
-        bytes_a_pixel
-            .saturating_mul(pixels)
-            .saturating_add(tree::BYTES_A_SPHERE * spheres + BYTES_A_TEXEL * texels + MARGIN),
-        &format!(
-            "an image of {} × {} pixels of {}",
-            scene.width,
-            scene.height,
-            count_of(scene.world.spheres.len(), "sphere"),
-        ),
-    )
-}
-
 /// Makes pixels that no kernel has written black ones that show no sphere, and returns how opaque each pixel is; nothing if all are
 /// there, or if there is no memory for it.
 fn blank_the_rest(pixels: &mut [Pixel]) -> Vec<f32> {
@@ -274,105 +163,4 @@ fn blank_the_rest(pixels: &mut [Pixel]) -> Vec<f32> {
         }
     }
     alpha
-}
-
-/// The launch that covers the whole image and every sphere; tiles and runs are cut out of it.
-///
-/// # Errors
-///
-/// [`Error::Scene`] as [`Scene::validate`] has it.
-pub fn whole_image(scene: &Scene) -> Result<Launch> {
-    scene.validate()?;
-    let size = glam::UVec2::new(scene.width, scene.height);
-    Ok(Launch {
-        camera: camera(scene)?,
-        background: scene
-            .sky
-            .as_ref()
-            .map_or(scene.background, |sky| sky.horizon),
-        first_of_tile: 1,
-        image_size: size,
-        tile_origin: glam::UVec2::ZERO,
-        tile_size: size,
-        first_sphere: 0,
-        sphere_count: u32::MAX,
-    })
-}
-
-/// Whether a launch covers a part of an image that can be.
-fn check_launch(launch: &Launch) -> Result<()> {
-    let Launch {
-        image_size: size,
-        tile_origin: origin,
-        tile_size: tile,
-        ..
-    } = *launch;
-    let is_image = size
-        .cmple(glam::UVec2::splat(crate::scene::limits::MAX_IMAGE_SIDE))
-        .all();
-    let is_inside = origin.cmple(size).all() && tile.cmple(size - origin.min(size)).all();
-    if is_image && is_inside && tile.min_element() > 0 {
-        return Ok(());
-    }
-    Err(Error::Scene(SceneError::without_place(
-        "",
-        format!("a launch of {tile} pixels from {origin} on is no part of an image of {size}"),
-        "make it by render::whole_image",
-    )))
-}
-
-/// Whether a launch covers an image that can be, all of it.
-fn check_whole(launch: &Launch) -> Result<()> {
-    check_launch(&Launch {
-        tile_origin: glam::UVec2::ZERO,
-        tile_size: launch.image_size,
-        ..*launch
-    })
-}
-
-/// Whether light paths are to be traced for an image that can be, all of it.
-fn check_path_launch(launch: &PathLaunch) -> Result<()> {
-    check_launch(&Launch {
-        image_size: launch.image_size,
-        tile_origin: launch.tile_origin,
-        tile_size: launch.tile_size,
-        ..Launch::default()
-    })?;
-    if launch.tile_size == launch.image_size {
-        return Ok(());
-    }
-    Err(Error::Scene(SceneError::without_place(
-        "",
-        format!(
-            "light paths are to be traced for {} of {} pixels",
-            launch.tile_size, launch.image_size
-        ),
-        "leave the launch as paths::Prepared::new makes it; parts of it are chosen by the device",
-    )))
-}
-
-/// Whether these are as many pixels as a launch has, which was checked.
-fn check_pixels(launch: &Launch, count: usize) -> Result<()> {
-    let tile = launch.tile_size;
-    if count as u64 == u64::from(tile.x) * u64::from(tile.y) {
-        return Ok(());
-    }
-    Err(Error::Scene(SceneError::without_place(
-        "",
-        format!("a launch of {tile} pixels has room for {count}"),
-        "give as many pixels as the launch has",
-    )))
-}
-
-fn camera(scene: &Scene) -> Result<Camera> {
-    scene
-        .view_or_framed()
-        .camera(scene.aspect())
-        .ok_or_else(|| {
-            Error::Scene(SceneError::without_place(
-                "",
-                "the scene's camera is degenerate",
-                "move eye and target apart, give an up that is not along the view, and a field of view between 0 and 180 degrees",
-            ))
-        })
 }

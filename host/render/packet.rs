@@ -3,21 +3,21 @@
 //! The rays of a square share their origin. Four planes through the eye and the sides of the square
 //! bound them all, so that boxes are tested once for 64 rays; the eight boxes of a node are tested side by side.
 //! Four more planes along the square's middle tell which of its quarters a sphere may be seen in.
-//! There it is tested against 16 rays side by side by the few operations of [`candidates`](spherule_kernel::candidates), and
+//! There it is tested against 16 rays side by side by the few operations of [`candidates`](spherule_kernel::cull::discriminant), and
 //! only what may be a hit is asked about on its rung: on [`Rung::Robust`] and [`Rung::Double`] 16 rays side by side again, with the
 //! very operations of the kernel, in their order; on [`Rung::Compensated`] and [`Rung::Certified`] about the nearest at the end,
-//! and about what [`bounds`](spherule_kernel::bounds) leave open.
+//! and about what [`bounds`](spherule_kernel::cull::bounds) leave open.
 //!
 //! The formulas are the kernel's, over [`Single16`] and [`Double16`]. Loops over the eight boxes of a node become vector
 //! instructions; all is compiled for each instruction set, and chosen by the packet's [`InstructionSet`].
 
 use fearless_simd::{Level, Select, Simd, SimdBase, SimdMask, dispatch, mask32x16, u32x16};
 use glam::{DVec3, UVec2, UVec4, Vec2, Vec3};
-use spherule_kernel::bounds::Aim;
-use spherule_kernel::candidates::Target;
+use spherule_kernel::accel::node::{Extent, Node, Tree};
+use spherule_kernel::cull::bounds::Aim;
+use spherule_kernel::cull::discriminant::Target;
 use spherule_kernel::lane::{Lane, Lane3};
 use spherule_kernel::precision::{double, intersect, robust};
-use spherule_kernel::tree::{Extent, Node, Tree};
 use spherule_kernel::{Camera, Hit, Launch, Ray, Rung, Sphere};
 
 use crate::cpu::InstructionSet;
@@ -28,7 +28,7 @@ pub const SIDE: usize = 8;
 const RAYS: usize = SIDE * SIDE;
 const GROUPS: usize = RAYS / LANES;
 const WIDTH: usize = Node::WIDTH;
-/// The squares of the directions' lengths for which [`bounds`](spherule_kernel::bounds) hold without scaling, which wants 1/|d| to be 1 at most: that of
+/// The squares of the directions' lengths for which [`bounds`](spherule_kernel::cull::bounds) hold without scaling, which wants 1/|d| to be 1 at most: that of
 /// a camera's rays is, but for its rounding.
 const SQUARES: std::ops::Range<f32> = 0.999..(1_u64 << 40) as f32;
 /// 32u, u = 2⁻²⁴: what a box test may be off by for its terms, twice over.
@@ -59,7 +59,7 @@ pub struct Packet {
     /// nearest, so that `t` is where it is hit at most.
     low: [Lanes; GROUPS],
     are_unasked: [u32; GROUPS],
-    /// Whether directions are of such length that [`bounds`](spherule_kernel::bounds) hold for them as they are.
+    /// Whether directions are of such length that [`bounds`](spherule_kernel::cull::bounds) hold for them as they are.
     has_bounds: bool,
     /// The largest t of each group.
     end: [f32; GROUPS],
@@ -404,7 +404,7 @@ impl Packet {
     }
 
     /// Takes the sphere where it is the nearest for certain, and tells for which rays the rung is to be asked, a bit each:
-    /// [`bounds`](spherule_kernel::bounds) for 16 rays.
+    /// [`bounds`](spherule_kernel::cull::bounds) for 16 rays.
     #[inline(always)]
     fn test_bounds<S: Simd>(&mut self, simd: S, group: usize, sphere: Sphere, index: u32) -> u32 {
         let aim = Aim {
@@ -740,12 +740,12 @@ fn children(node: &Node) -> u32 {
 
 #[cfg(test)]
 mod tests {
-    use spherule_kernel::nearest::nearest_hit_in;
+    use spherule_kernel::accel::brute::nearest_hit_in;
 
     use super::*;
-    use crate::accuracy::random::Random;
+    use crate::accel::build_still;
     use crate::cpu;
-    use crate::scene::tree::grow_still;
+    use crate::random::Random;
 
     const SIZE: UVec2 = UVec2::new(45, 29);
 
@@ -768,7 +768,7 @@ mod tests {
         launch: &Launch,
         spheres: &[Sphere],
     ) -> usize {
-        let tree = grow_still(spheres, 1).expect("a tree");
+        let tree = build_still(spheres, 1).expect("a tree");
         let sorted = tree.sort(spheres);
         let mut hits = 0;
         let mut packet = Packet::new(instructions);

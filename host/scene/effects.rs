@@ -1,6 +1,6 @@
 //! Which effects a scene calls for, and by what.
 
-use spherule_kernel::microfacet::SMOOTHEST;
+use spherule_kernel::material::microfacet::SMOOTHEST;
 use spherule_kernel::{Effects, Material};
 
 use super::{Sampling, Scene};

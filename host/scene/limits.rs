@@ -4,7 +4,7 @@ use std::fmt;
 
 use glam::{DVec3, Vec3};
 use spherule_kernel::Sphere;
-use spherule_kernel::tree::Node;
+use spherule_kernel::accel::node::Node;
 
 /// The largest width or height of an image, in pixels.
 pub const MAX_IMAGE_SIDE: u32 = 65_536;

@@ -7,33 +7,19 @@
 //! | [`limits`] | what the numbers of a scene may be |
 //! | [`surroundings`] | light, sky, fog, lens: what there is besides spheres |
 //! | [`mod@effects`] | which effects a scene calls for, and by what |
-//! | [`formats`] | the kinds of files that scenes are read from |
-//! | [`toml_file`] | scenes written by a person |
-//! | [`tree`] | boxes around the spheres of a world |
 //! | `validate` | whether a scene can be rendered |
-//! | [`molecule`] | molecules from PDB and XYZ files |
-//! | [`environment`] | images of the surroundings |
-//! | `text` | text files of any size |
 
 pub mod effects;
-pub mod environment;
-pub mod formats;
 pub mod limits;
-pub mod molecule;
 pub mod surroundings;
-mod text;
-pub mod toml_file;
-pub mod tree;
 mod validate;
 pub mod view;
 pub mod world;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use glam::Vec3;
 
-use crate::error::{Error, Result, SceneError};
-use formats::{Contents, Format};
 pub use surroundings::{Develop, FogBall, Lens, PointLight, Sampling, Surroundings};
 pub use view::View;
 pub use world::World;
@@ -94,28 +80,6 @@ impl Scene {
             develop: Develop::default(),
             sources: Vec::new(),
         }
-    }
-
-    /// Reads a scene or a molecule, in one of the [`formats`].
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Scene`] says which file is wrong, where in it, and how to mend it.
-    pub fn load(path: impl AsRef<Path>) -> Result<Self> {
-        let path = path.as_ref();
-        let mut scene = match Format::of(path).map(|format| format.contents) {
-            Some(Contents::Scene(load)) => load(path)?,
-            Some(Contents::Atoms(parse)) => Self::new(molecule::load(path, parse)?),
-            None => {
-                return Err(Error::Scene(SceneError::without_place(
-                    path,
-                    "not a kind of file that spherule reads",
-                    format!("give a {}", formats::inputs()),
-                )));
-            }
-        };
-        scene.sources.push(path.into());
-        Ok(scene)
     }
 
     /// The view that is rendered: the one given, or else one that frames the world.

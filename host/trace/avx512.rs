@@ -1,16 +1,13 @@
-//! The boxes of a node with AVX-512, and sixteen spheres against one ray.
+//! The proof that this machine has AVX-512, and sixteen spheres against one ray.
 
 use std::arch::x86_64::*;
 
 use fearless_simd::{Level, x86};
-use glam::{UVec4, Vec3};
+use glam::Vec3;
 use spherule_kernel::Sphere;
-use spherule_kernel::bounds::{Line, OFF, OFF_BY_RADIUS, OUTSIDE};
-use spherule_kernel::candidates::{SLACK, SMALLEST};
-use spherule_kernel::tree::{Node, Slabs};
+use spherule_kernel::cull::bounds::{Line, OFF, OFF_BY_RADIUS, OUTSIDE};
+use spherule_kernel::cull::discriminant::{SLACK, SMALLEST};
 
-use super::single::{Resting, Search};
-use super::walk::Wide;
 use crate::cpu::InstructionSet;
 pub(super) use crate::lanes::LANES;
 
@@ -25,172 +22,6 @@ impl Avx512 {
             _ => None,
         }
     }
-}
-
-impl Wide for Avx512 {
-    type Planes = Planes;
-
-    #[inline(always)]
-    fn planes(self, slabs: &Slabs) -> Planes {
-        // SAFETY: the machine has AVX-512.
-        unsafe { Planes::of(slabs) }
-    }
-
-    #[inline(always)]
-    fn end_at(self, planes: &mut Planes, end: f32) {
-        // SAFETY: as above.
-        planes.start_and_end = unsafe { near_and_far(0.0, end) };
-    }
-
-    #[inline(always)]
-    fn meets(self, planes: &Planes, node: &Node) -> (u32, __m256) {
-        // SAFETY: as above.
-        unsafe { planes.meets(node) }
-    }
-
-    #[inline(always)]
-    fn keys(self, met: u32, near: __m256) -> __m256i {
-        // SAFETY: as above.
-        unsafe { keys(met, near) }
-    }
-
-    #[inline(always)]
-    fn test_all<const ANY: bool, S: Resting + ?Sized>(
-        self,
-        search: &mut Search,
-        spheres: &S,
-        node: &Node,
-    ) -> bool {
-        let Some(spheres) = spheres.at_rest() else {
-            return false;
-        };
-        let (first, count) = node.all_spheres();
-        search.test_wide::<ANY>(self, spheres, first, count);
-        true
-    }
-}
-
-/// What stays the same of a ray from node to node. Of each four lanes of a vector the first and the third are of near
-/// planes, the others of far ones, whose parameters are negated: so the latest entry and the earliest exit are both a largest one.
-pub(super) struct Planes {
-    /// One over the direction.
-    inverse: [__m512; 3],
-    /// What is added.
-    first: [__m512; 3],
-    start_and_end: __m512,
-    /// Which of a node's rows of sides are near ones.
-    near_rows: [usize; 3],
-}
-
-/// As the lanes of [`Planes`].
-#[inline]
-#[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
-fn near_and_far(near: f32, far: f32) -> __m512 {
-    _mm512_mask_blend_ps(FAR, _mm512_set1_ps(near), _mm512_set1_ps(-far))
-}
-impl Planes {
-    #[inline]
-    #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
-    fn of(slabs: &Slabs) -> Self {
-        let (inverse, near, far) = (
-            slabs.inverse.to_array(),
-            slabs.near.to_array(),
-            slabs.far.to_array(),
-        );
-        Self {
-            inverse: [0, 1, 2].map(|axis| near_and_far(inverse[axis], inverse[axis])),
-            first: [0, 1, 2].map(|axis| near_and_far(near[axis], far[axis])),
-            start_and_end: near_and_far(0.0, 0.0),
-            near_rows: slabs.near_rows.to_array().map(|row| row as usize),
-        }
-    }
-
-    #[inline]
-    #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
-    fn meets(&self, node: &Node) -> (u32, __m256) {
-        let corner = [node.corner.x, node.corner.y, node.corner.z].map(f32::from_bits);
-        let row = |at: usize| -> __m128i {
-            // SAFETY: `at` is one of the six rows.
-            let words: *const UVec4 = unsafe { node.sides.get_unchecked(at) };
-            // SAFETY: a row is 16 bytes.
-            unsafe { _mm_loadu_si128(words.cast()) }
-        };
-        let planes = |axis: usize| {
-            let near = self.near_rows[axis];
-            let far = 2 * axis + 3 - near;
-            let words = _mm256_inserti128_si256::<1>(_mm256_castsi128_si256(row(near)), row(far));
-            let lower = _mm512_castsi256_si512(_mm256_slli_epi32::<16>(words));
-            let sides = _mm512_castsi512_ps(_mm512_inserti64x4::<1>(lower, words));
-            let inverse = self.inverse[axis];
-            let first = _mm512_fmadd_ps(_mm512_set1_ps(corner[axis]), inverse, self.first[axis]);
-            _mm512_fmadd_ps(sides, inverse, first)
-        };
-        let last = _mm512_max_ps(planes(2), self.start_and_end);
-        let last = _mm512_max_ps(_mm512_max_ps(planes(0), planes(1)), last);
-        // Each of a near plane's lanes is met by that of the far one.
-        let others = _mm512_shuffle_f32x4::<0b10_11_00_01>(last, last);
-        let gap = _mm512_add_ps(last, others);
-        let met = _mm512_cmp_ps_mask::<_CMP_LE_OQ>(gap, _mm512_setzero_ps());
-        let met = _pext_u32(u32::from(met), u32::from(!FAR));
-        let entries = _mm256_insertf128_ps::<1>(
-            _mm512_castps512_ps256(last),
-            _mm512_extractf32x4_ps::<2>(last),
-        );
-        (met, entries)
-    }
-}
-
-/// Lanes of far planes.
-const FAR: __mmask16 = 0xf0f0;
-
-/// Keys of the boxes that are met.
-#[inline]
-#[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
-fn keys(met: u32, near: __m256) -> __m256i {
-    let children = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
-    let near = _mm256_castps_si256(near);
-    // (near & !7) | child
-    let keys = _mm256_ternarylogic_epi32::<0b1101_1000>(near, children, _mm256_set1_epi32(7));
-    let keys = _mm256_mask_mov_epi32(_mm256_set1_epi32(i32::MIN), met as __mmask8, keys);
-    macro_rules! exchange {
-        ($keys:expr, $with:expr, $smaller:literal) => {{
-            let (keys, others) = ($keys, $with);
-            let larger = _mm256_max_epi32(keys, others);
-            _mm256_mask_min_epi32(larger, $smaller, keys, others)
-        }};
-    }
-    // Batcher's bitonic network: pairs, fours, all eight.
-    let keys = exchange!(
-        keys,
-        _mm256_shuffle_epi32::<0b10_11_00_01>(keys),
-        0b1010_1010
-    );
-    let keys = exchange!(
-        keys,
-        _mm256_shuffle_epi32::<0b00_01_10_11>(keys),
-        0b1100_1100
-    );
-    let keys = exchange!(
-        keys,
-        _mm256_shuffle_epi32::<0b10_11_00_01>(keys),
-        0b1010_1010
-    );
-    let reversed = _mm256_setr_epi32(7, 6, 5, 4, 3, 2, 1, 0);
-    let keys = exchange!(
-        keys,
-        _mm256_permutevar8x32_epi32(keys, reversed),
-        0b1111_0000
-    );
-    let keys = exchange!(
-        keys,
-        _mm256_shuffle_epi32::<0b01_00_11_10>(keys),
-        0b1100_1100
-    );
-    exchange!(
-        keys,
-        _mm256_shuffle_epi32::<0b10_11_00_01>(keys),
-        0b1010_1010
-    )
 }
 
 /// Which of up to sixteen spheres a line may hit, given by its origin, its direction and that one's square, a bit each.

@@ -1,12 +1,13 @@
 //! [`CpuTracer`]: rays on every thread of this machine.
 
 use rayon::prelude::*;
-use spherule_kernel::tree::{Tree, work_in_tree};
+use spherule_kernel::accel::node::Tree;
+use spherule_kernel::accel::walk::work_in_tree;
 use spherule_kernel::{Hit, Ray, Rung, Sphere};
 
 use super::levels::Levels;
 use super::single::Single;
-use crate::scene::tree::{self, Acceleration, MIN_SPHERES, Nodes};
+use crate::accel::{self, Acceleration, MIN_SPHERES, Nodes};
 
 /// Rays that a thread takes at once.
 const GRAIN: usize = 1 << 10;
@@ -25,7 +26,7 @@ impl CpuTracer {
     /// Grows the tree.
     #[must_use]
     pub fn new(spheres: &[Sphere], acceleration: Acceleration) -> Self {
-        match tree::grow_still(spheres, acceleration.min_spheres(MIN_SPHERES)) {
+        match accel::build_still(spheres, acceleration.min_spheres(MIN_SPHERES)) {
             Some(tree) => Self {
                 spheres: tree.sort(spheres),
                 levels: Levels::of(tree.nodes.tree()),

@@ -2,13 +2,13 @@
 
 use std::time::Duration;
 
-use spherule_kernel::tree::Node;
+use spherule_kernel::accel::node::Node;
 use spherule_kernel::{Hit, Ray, Rung, Sphere};
 
+use crate::accel::{self, Acceleration};
 use crate::device::{Access, Buffer, Gpu, Kernel};
 use crate::error::Result;
 use crate::kernel_module;
-use crate::scene::tree::{self, Acceleration};
 
 /// From how many spheres on a tree pays for single rays on a GPU.
 const MIN_SPHERES: usize = 16;
@@ -40,7 +40,7 @@ impl<'a> GpuTracer<'a> {
     /// The device's errors, here and in the other functions.
     pub fn new(gpu: &'a Gpu, spheres: &[Sphere], acceleration: Acceleration) -> Result<Self> {
         Ok(
-            match tree::grow_still(spheres, acceleration.min_spheres(MIN_SPHERES)) {
+            match accel::build_still(spheres, acceleration.min_spheres(MIN_SPHERES)) {
                 Some(tree) => Self {
                     gpu,
                     spheres: gpu.upload("spheres", &tree.sort(spheres))?,

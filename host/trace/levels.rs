@@ -6,7 +6,7 @@
 //! level holds the boxes 16 i to 16 i + 15 of the next.
 
 use glam::Vec3;
-use spherule_kernel::tree::{Node, Tree};
+use spherule_kernel::accel::node::{Node, Tree};
 
 /// Boxes in a box, and spheres in one at the bottom.
 pub(super) const WIDTH: usize = 16;

@@ -3,17 +3,24 @@
 //! | module | holds |
 //! | --- | --- |
 //! | [`cpu`] | [`CpuTracer`]: on every thread of this machine |
-//! | `single` | rays one by one on the CPU, several boxes and spheres side by side |
-//! | `levels` | boxes of sixteen boxes, for worlds that are not too large |
 //! | [`gpu`] | [`GpuTracer`]: on a GPU |
+//! | `single` | rays one by one on the CPU: which of the ways below they take |
+//! | `search` | a ray on its way among spheres, four of them side by side |
+//! | `walk`, `wide` | rays through a tree, the eight boxes of a node side by side |
+//! | `boxes_avx2`, `boxes_avx512` | those boxes with AVX2, and with AVX-512 |
+//! | `levels`, `stream`, `sixteen` | boxes of sixteen boxes, and sixteen rays that go through them together, with AVX-512 |
+//! | `avx512` | the proof that this machine has AVX-512, and sixteen spheres against one ray |
 
 #[cfg(target_arch = "x86_64")]
-mod avx2;
-#[cfg(target_arch = "x86_64")]
 mod avx512;
+#[cfg(target_arch = "x86_64")]
+mod boxes_avx2;
+#[cfg(target_arch = "x86_64")]
+mod boxes_avx512;
 pub mod cpu;
 pub mod gpu;
 pub(crate) mod levels;
+mod search;
 pub(crate) mod single;
 #[cfg(target_arch = "x86_64")]
 mod sixteen;
@@ -21,6 +28,8 @@ mod sixteen;
 mod stream;
 #[cfg(target_arch = "x86_64")]
 mod walk;
+#[cfg(target_arch = "x86_64")]
+mod wide;
 
 pub use cpu::CpuTracer;
 pub use gpu::GpuTracer;

@@ -4,10 +4,11 @@ use std::arch::x86_64::*;
 
 use fearless_simd::{SimdFrom, f32x16};
 use glam::Vec3;
-use spherule_kernel::bounds::Line;
+use spherule_kernel::accel::node::{Extent, Node};
+use spherule_kernel::accel::slabs::Slabs;
+use spherule_kernel::cull::bounds::Line;
 use spherule_kernel::lane::{Lane as _, Lane3};
 use spherule_kernel::precision::robust::Quadratic;
-use spherule_kernel::tree::{Extent, Node, Slabs};
 use spherule_kernel::{Hit, Ray, Rung, Sphere};
 
 use super::avx512::{self, Avx512};

@@ -10,12 +10,12 @@ use std::arch::x86_64::*;
 use std::cell::RefCell;
 use std::mem::MaybeUninit;
 
-use spherule_kernel::tree::Slabs;
+use spherule_kernel::accel::slabs::Slabs;
 use spherule_kernel::{Hit, Ray, Rung, Sphere};
 
 use super::avx512::{Avx512, LANES};
 use super::levels::{Group, Levels};
-use super::single::Single;
+use super::search::Query;
 use super::sixteen::{Planes, Sixteen, end_of, is_plain};
 use super::walk::{self, Features};
 
@@ -58,7 +58,7 @@ const fn of_pair(pair: u32) -> (usize, usize) {
 pub(super) fn trace<const ANY: bool>(
     wide: Avx512,
     levels: &Levels,
-    single: &Single<'_>,
+    query: &Query<'_>,
     rays: &[Ray],
     spheres: &[Sphere],
     mut put: impl FnMut(usize, Hit),
@@ -69,9 +69,9 @@ pub(super) fn trace<const ANY: bool>(
     };
     for (some, rays) in rays.chunks(LANES).enumerate() {
         let mut put = |index: usize, hit: Hit| put(LANES * some + index, hit);
-        let are_plain = room.sixteen.take(single.rung, rays, &single.extent);
+        let are_plain = room.sixteen.take(query.rung, rays, &query.extent);
         if !are_plain {
-            walk::trace::<ANY, _>(Features::Avx512(wide), single, rays, spheres, put);
+            walk::trace::<ANY, _>(Features::Avx512(wide), query, rays, spheres, put);
             continue;
         }
         room.begin(top, rays.len());
@@ -79,8 +79,8 @@ pub(super) fn trace<const ANY: bool>(
             room.descend(level);
         }
         if room.pairs.len() > MOST {
-            walk::trace::<ANY, _>(Features::Avx512(wide), single, rays, spheres, put);
-        } else if single.rung == Rung::Robust {
+            walk::trace::<ANY, _>(Features::Avx512(wide), query, rays, spheres, put);
+        } else if query.rung == Rung::Robust {
             let nearest = room.ask(wide, levels, spheres);
             for index in 0..rays.len() {
                 put(index, nearest.hit(index));
@@ -88,7 +88,7 @@ pub(super) fn trace<const ANY: bool>(
         } else {
             let mut pairs = room.pairs.iter().peekable();
             for (index, ray) in rays.iter().enumerate() {
-                let mut search = single.search(ray);
+                let mut search = query.search(ray);
                 while let Some(pair) = pairs.next_if(|pair| of_pair(**pair).0 == index) {
                     let (first, count) = levels.spheres[of_pair(*pair).1];
                     search.test_wide::<ANY>(wide, spheres, first, count);
@@ -107,15 +107,15 @@ pub(super) fn trace<const ANY: bool>(
 pub(super) fn trace_one<const ANY: bool>(
     wide: Avx512,
     levels: &Levels,
-    single: &Single<'_>,
+    query: &Query<'_>,
     ray: &Ray,
     spheres: &[Sphere],
 ) -> Hit {
     /// A key's bits that say which box.
     const INDEX: i32 = MOST_ALONE as i32 - 1;
-    let slabs = Slabs::of(single.rung.to_u32(), ray, &single.extent);
+    let slabs = Slabs::of(query.rung.to_u32(), ray, &query.extent);
     if !is_plain(ray, slabs.start) {
-        return walk::trace_one::<ANY, _>(Features::Avx512(wide), single, ray, spheres);
+        return walk::trace_one::<ANY, _>(Features::Avx512(wide), query, ray, spheres);
     }
     let planes = Planes::of(&slabs, ray.end());
     // Where a box is entered, as a float's bits, whose lowest say which box.
@@ -152,7 +152,7 @@ pub(super) fn trace_one<const ANY: bool>(
     }
     // SAFETY: as many were written.
     let keys = unsafe { keys[..count].assume_init_mut() };
-    let mut search = single.search(ray);
+    let mut search = query.search(ray);
     let mut last_key = i32::MAX;
     for done in 0..keys.len() {
         // The nearest of the others to its place.
@@ -418,14 +418,15 @@ impl Nearest {
 mod tests {
     use glam::Vec3;
     use spherule_kernel::Effects;
-    use spherule_kernel::nearest::{MovingSpheres, nearest_hit_in};
-    use spherule_kernel::traversal::Traversal;
+    use spherule_kernel::accel::brute::{MovingSpheres, nearest_hit_in};
+    use spherule_kernel::accel::traversal::Traversal;
 
+    use super::super::single::Single;
     use super::super::walk::tests::{rays, world};
     use super::*;
-    use crate::accuracy::random::Random;
+    use crate::accel::build_still;
     use crate::cpu::InstructionSet;
-    use crate::scene::tree::grow_still;
+    use crate::random::Random;
 
     /// Each ray finds what testing every sphere finds, with others and alone, on every rung: in worlds of one box and of many
     /// levels, and where all spheres are in almost the same place, so that there are too many boxes.
@@ -444,7 +445,7 @@ mod tests {
             worlds.push((world(&mut random, count), false));
         }
         for (spheres, is_heap) in worlds {
-            let tree = grow_still(&spheres, 1).expect("a tree");
+            let tree = build_still(&spheres, 1).expect("a tree");
             let spheres = tree.sort(&spheres);
             let levels = Levels::of(tree.nodes.tree()).expect("levels");
             assert!(!is_heap || levels.spheres.len() * LANES > MOST);
@@ -479,7 +480,7 @@ mod tests {
     #[test]
     fn large_worlds_have_no_levels() {
         let mut random = Random::new(12);
-        let tree = grow_still(&world(&mut random, 300_000), 1).expect("a tree");
+        let tree = build_still(&world(&mut random, 300_000), 1).expect("a tree");
         assert!(Levels::of(tree.nodes.tree()).is_none());
     }
 }

@@ -8,12 +8,14 @@
 use std::arch::x86_64::*;
 use std::mem::MaybeUninit;
 
-use spherule_kernel::tree::{Node, Slabs};
+use spherule_kernel::accel::node::Node;
+use spherule_kernel::accel::slabs::Slabs;
 use spherule_kernel::{Hit, Ray};
 
-use super::avx2::Avx2;
 use super::avx512::Avx512;
-use super::single::{Resting, Search, Single};
+use super::boxes_avx2::Avx2;
+use super::search::{Query, Resting, Search};
+use super::wide::Wide;
 use crate::cpu::InstructionSet;
 
 const WIDTH: usize = Node::WIDTH;
@@ -38,44 +40,19 @@ impl Features {
     }
 }
 
-/// How boxes and spheres are tested: a value is the proof that the machine has the instructions.
-pub(super) trait Wide: Copy {
-    /// What stays the same of a ray from node to node.
-    type Planes;
-
-    fn planes(self, slabs: &Slabs) -> Self::Planes;
-
-    /// Sets the end of the ray, as [`Slabs::widened_end`] has it.
-    fn end_at(self, planes: &mut Self::Planes, end: f32);
-
-    /// Which of a node's boxes the ray may meet, a bit each, and where it enters them.
-    fn meets(self, planes: &Self::Planes, node: &Node) -> (u32, __m256);
-
-    /// The keys of those of the boxes that are met, as [`Stack`] has them, the largest first; behind them negative ones.
-    fn keys(self, met: u32, near: __m256) -> __m256i;
-
-    /// Tests the spheres of a node without nodes in it, if that is better than to look at its boxes.
-    fn test_all<const ANY: bool, S: Resting + ?Sized>(
-        self,
-        search: &mut Search,
-        spheres: &S,
-        node: &Node,
-    ) -> bool;
-}
-
 /// What a ray hits: the nearest, or with `ANY` the first that is found.
 pub(super) fn trace_one<const ANY: bool, S: Resting + ?Sized>(
     features: Features,
-    single: &Single<'_>,
+    query: &Query<'_>,
     ray: &Ray,
     spheres: &S,
 ) -> Hit {
     match features {
         // SAFETY: the machine has the features.
-        Features::Avx2(wide) => unsafe { one_with_avx2::<ANY, _, S>(wide, single, ray, spheres) },
+        Features::Avx2(wide) => unsafe { one_with_avx2::<ANY, _, S>(wide, query, ray, spheres) },
         // SAFETY: as above.
         Features::Avx512(wide) => unsafe {
-            one_with_avx512::<ANY, _, S>(wide, single, ray, spheres)
+            one_with_avx512::<ANY, _, S>(wide, query, ray, spheres)
         },
     }
 }
@@ -83,7 +60,7 @@ pub(super) fn trace_one<const ANY: bool, S: Resting + ?Sized>(
 /// What each ray hits; `put` is told the ray's index.
 pub(super) fn trace<const ANY: bool, S: Resting + ?Sized>(
     features: Features,
-    single: &Single<'_>,
+    query: &Query<'_>,
     rays: &[Ray],
     spheres: &S,
     put: impl FnMut(usize, Hit),
@@ -91,11 +68,11 @@ pub(super) fn trace<const ANY: bool, S: Resting + ?Sized>(
     match features {
         // SAFETY: the machine has the features.
         Features::Avx2(wide) => unsafe {
-            all_with_avx2::<ANY, _, S>(wide, single, rays, spheres, put);
+            all_with_avx2::<ANY, _, S>(wide, query, rays, spheres, put);
         },
         // SAFETY: as above.
         Features::Avx512(wide) => unsafe {
-            all_with_avx512::<ANY, _, S>(wide, single, rays, spheres, put);
+            all_with_avx512::<ANY, _, S>(wide, query, rays, spheres, put);
         },
     }
 }
@@ -105,25 +82,25 @@ macro_rules! with_features {
         #[target_feature(enable = $features)]
         fn $one<const ANY: bool, W: Wide, S: Resting + ?Sized>(
             wide: W,
-            single: &Single<'_>,
+            query: &Query<'_>,
             ray: &Ray,
             spheres: &S,
         ) -> Hit {
             let mut stack = Stack::new();
-            let mut walk = Walk::of(wide, single, ray);
-            while walk.step::<ANY, S>(single.tree.nodes(), spheres, &mut stack) {}
+            let mut walk = Walk::of(wide, query, ray);
+            while walk.step::<ANY, S>(query.tree.nodes(), spheres, &mut stack) {}
             walk.search.finish::<ANY>()
         }
 
         #[target_feature(enable = $features)]
         fn $all<const ANY: bool, W: Wide, S: Resting + ?Sized>(
             wide: W,
-            single: &Single<'_>,
+            query: &Query<'_>,
             rays: &[Ray],
             spheres: &S,
             put: impl FnMut(usize, Hit),
         ) {
-            in_turns::<ANY, W, S>(wide, single, rays, spheres, put);
+            in_turns::<ANY, W, S>(wide, query, rays, spheres, put);
         }
     };
 }
@@ -142,12 +119,12 @@ with_features!(
 #[inline(always)]
 fn in_turns<const ANY: bool, W: Wide, S: Resting + ?Sized>(
     wide: W,
-    single: &Single<'_>,
+    query: &Query<'_>,
     rays: &[Ray],
     spheres: &S,
     mut put: impl FnMut(usize, Hit),
 ) {
-    let nodes = single.tree.nodes();
+    let nodes = query.tree.nodes();
     let mut stacks = [const { Stack::new() }; RAYS];
     let mut rest = rays.iter().enumerate();
     let mut walks = [const { MaybeUninit::<Walk<W>>::uninit() }; RAYS];
@@ -156,7 +133,7 @@ fn in_turns<const ANY: bool, W: Wide, S: Resting + ?Sized>(
     let mut count = 0;
     for (walk, index) in walks.iter_mut().zip(&mut indices) {
         let Some((of, ray)) = rest.next() else { break };
-        walk.write(Walk::of(wide, single, ray));
+        walk.write(Walk::of(wide, query, ray));
         *index = of;
         count += 1;
     }
@@ -171,7 +148,7 @@ fn in_turns<const ANY: bool, W: Wide, S: Resting + ?Sized>(
             }
             put(indices[place], walk.search.finish::<ANY>());
             if let Some((of, ray)) = rest.next() {
-                *walk = Walk::of(wide, single, ray);
+                *walk = Walk::of(wide, query, ray);
                 indices[place] = of;
                 place += 1;
             } else {
@@ -248,11 +225,11 @@ struct Walk<W: Wide> {
 
 impl<W: Wide> Walk<W> {
     #[inline(always)]
-    fn of(wide: W, single: &Single<'_>, ray: &Ray) -> Self {
-        let slabs = Slabs::of(single.rung.to_u32(), ray, &single.extent);
+    fn of(wide: W, query: &Query<'_>, ray: &Ray) -> Self {
+        let slabs = Slabs::of(query.rung.to_u32(), ray, &query.extent);
         let mut walk = Self {
             wide,
-            search: single.search(ray),
+            search: query.search(ray),
             planes: wide.planes(&slabs),
             start: slabs.start,
             unit: slabs.unit,
@@ -343,13 +320,13 @@ impl<W: Wide> Walk<W> {
 #[cfg(test)]
 pub(super) mod tests {
     use glam::Vec3;
-    use spherule_kernel::nearest::{MovingSpheres, Spheres, is_occluded, nearest_hit_in};
-    use spherule_kernel::tree::Tree;
+    use spherule_kernel::accel::brute::{MovingSpheres, Spheres, is_occluded, nearest_hit_in};
+    use spherule_kernel::accel::node::Tree;
     use spherule_kernel::{Effects, Rung, Sphere};
 
     use super::*;
-    use crate::accuracy::random::Random;
-    use crate::scene::tree::grow_still;
+    use crate::accel::build_still;
+    use crate::random::Random;
 
     /// Spheres of many sizes, and one around all.
     pub fn world(random: &mut Random, count: usize) -> Vec<Sphere> {
@@ -383,11 +360,11 @@ pub(super) mod tests {
         ];
         for features in all.into_iter().flatten() {
             for rung in Rung::ALL {
-                let single = Single::new(rung, tree, None);
+                let query = Query::new(rung, tree);
                 let code = rung.to_u32();
                 let expected = |ray: &Ray| nearest_hit_in(code, ray, spheres, 0, u32::MAX);
                 let (mut count, mut hits) = (0, 0);
-                trace::<false, S>(features, &single, rays, spheres, |index, hit| {
+                trace::<false, S>(features, &query, rays, spheres, |index, hit| {
                     let ray = &rays[index];
                     assert_eq!(hit, expected(ray), "{features:?} {rung:?} {ray:?}");
                     count += 1;
@@ -395,12 +372,12 @@ pub(super) mod tests {
                 });
                 assert_eq!(count, rays.len());
                 assert!(hits > rays.len() / 2, "{hits}");
-                trace::<true, S>(features, &single, rays, spheres, |index, hit| {
+                trace::<true, S>(features, &query, rays, spheres, |index, hit| {
                     let ray = &rays[index];
                     let is_occluded = is_occluded(code, ray, spheres);
                     assert_eq!(hit.is_some(), is_occluded, "{features:?} {rung:?} {ray:?}");
                 });
-                let one = trace_one::<false, S>(features, &single, &rays[0], spheres);
+                let one = trace_one::<false, S>(features, &query, &rays[0], spheres);
                 assert_eq!(one, expected(&rays[0]));
             }
         }
@@ -411,7 +388,7 @@ pub(super) mod tests {
     fn walks_find_what_testing_every_sphere_finds() {
         let mut random = Random::new(5);
         let spheres = world(&mut random, 3000);
-        let tree = grow_still(&spheres, 1).expect("a tree");
+        let tree = build_still(&spheres, 1).expect("a tree");
         compare(
             tree.nodes.tree(),
             &tree.sort(&spheres)[..],
@@ -437,7 +414,7 @@ pub(super) mod tests {
                 .map(|index| unsafe { moving.sphere(index) })
                 .collect()
         };
-        let tree = grow_still(&at(&spheres), 1).expect("a tree");
+        let tree = build_still(&at(&spheres), 1).expect("a tree");
         let moving = MovingSpheres {
             spheres: &tree.sort(&spheres),
             velocities: &velocities,

@@ -5,7 +5,7 @@ use exr::meta::attribute::{ChannelDescription, SampleType};
 use exr::meta::header::{Header, LayerAttributes};
 use rayon::prelude::*;
 
-use super::output::Failure;
+use super::failure::Failure;
 use super::sink::{Sink, Trouble};
 use crate::film::Image;
 
@@ -108,7 +108,7 @@ impl From<exr::error::Error> for Failure {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::accuracy::random::Random;
+    use crate::random::Random;
     use glam::Vec3;
     use spherule_kernel::{Pixel, Shading};
     use std::cell::OnceCell;

@@ -2,55 +2,14 @@
 
 use std::path::Path;
 
-use super::output::{Failure, Output};
+use super::failure::Failure;
+use super::format::{Format, PURPOSE};
+use super::output::Output;
 use super::sink::Sink;
 use super::{exr, png};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::film::Image;
 use crate::memory;
-
-/// A kind of image file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Format {
-    /// 8 bits a channel; light in sRGB, measurements as they are.
-    Png,
-    /// 32-bit floats, linear.
-    Exr,
-}
-
-impl Format {
-    /// The format that the file's extension names.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::OutputRefused`] if it names none that can be written.
-    pub fn of(path: &Path) -> Result<Self> {
-        let extension = path
-            .extension()
-            .map(|extension| extension.to_string_lossy().to_lowercase());
-        match extension.as_deref() {
-            Some("png") => Ok(Self::Png),
-            Some("exr") => Ok(Self::Exr),
-            _ => Err(Error::OutputRefused {
-                path: path.into(),
-                reason: "not a kind of image that spherule writes".into(),
-                help: "give a name that ends in .png or .exr".into(),
-            }),
-        }
-    }
-
-    /// The bytes of a file of this kind that could not be compressed at all.
-    fn most(self, image: &Image) -> u64 {
-        let has_alpha = image.alpha().is_some();
-        match self {
-            Self::Png => png::most(image.width(), image.height(), has_alpha),
-            Self::Exr => exr::most(image.width(), image.height(), has_alpha),
-        }
-    }
-}
-
-/// What memory is for here.
-pub(super) const PURPOSE: &str = "writing the image";
 
 /// Memory that is kept until an image is written, so that one which took long is not lost for want of it.
 #[derive(Debug)]
@@ -100,7 +59,7 @@ impl Image {
         let format = Format::of(output.path())?;
         // From here on it is for the encoder.
         drop(room);
-        output.fill(format.most(self), |sink, trouble| {
+        output.fill(most(format, self), |sink, trouble| {
             if self.pixels().is_empty() {
                 return Err(Failure::Encoding("it has no pixels".into()));
             }
@@ -109,5 +68,14 @@ impl Image {
                 Format::Exr => exr::write(self, sink, trouble),
             }
         })
+    }
+}
+
+/// The bytes of a file of this kind that could not be compressed at all.
+fn most(format: Format, image: &Image) -> u64 {
+    let has_alpha = image.alpha().is_some();
+    match format {
+        Format::Png => png::most(image.width(), image.height(), has_alpha),
+        Format::Exr => exr::most(image.width(), image.height(), has_alpha),
     }
 }

@@ -4,7 +4,9 @@
 //! | --- | --- |
 //! | [`output`] | [`Output`]: where something goes, what is checked about it, and how it gets there |
 //! | [`same`] | which names are one file: outputs that clash, and outputs that are inputs |
-//! | [`image`] | [`Image::save`](crate::Image::save): kinds of image files, and the memory that writing one takes |
+//! | `format`, [`image`] | the kinds of image files; [`Image::save`](crate::Image::save), and the memory that writing one takes |
+//! | `identity` | which file a path leads to |
+//! | `failure` | what can go wrong while an output is written |
 //! | `png`, `exr` | their encoders, which hold a few rows at once |
 //! | `sink` | what encoders write into |
 //! | `stream` | what is written into as it is |
@@ -12,6 +14,9 @@
 //! | `waiting` | what waits for somebody else |
 
 mod exr;
+mod failure;
+mod format;
+mod identity;
 pub mod image;
 pub mod output;
 mod png;
@@ -24,7 +29,9 @@ mod waiting;
 use std::path::Path;
 
 #[cfg(feature = "cli")]
-pub use image::{Format, Room};
+pub use format::Format;
+#[cfg(feature = "cli")]
+pub use image::Room;
 pub use output::Output;
 #[cfg(feature = "cli")]
 pub(crate) use temporary::remove_all as remove_unfinished;

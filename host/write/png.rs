@@ -5,7 +5,7 @@ use std::io::{Seek, Write};
 use png::{BitDepth, ColorType, DeflateCompression, Encoder, EncodingError, Filter, chunk};
 use simd_adler32::Adler32;
 
-use super::output::Failure;
+use super::failure::Failure;
 use super::sink::{Sink, Trouble};
 use crate::film::Image;
 use crate::film::encode;
@@ -192,7 +192,7 @@ mod tests {
 
     /// An image of noise or of one colour, as normals, which are stored as they are.
     fn image(width: u32, height: u32, is_noise: bool, has_alpha: bool) -> Image {
-        let mut random = crate::accuracy::random::Random::new(7);
+        let mut random = crate::random::Random::new(7);
         let mut value = || {
             if is_noise {
                 random.vec3(0.0, 1.0)

@@ -4,19 +4,11 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{UVec2, Vec3, Vec4};
 
-use crate::arithmetic::elements::read;
 use crate::camera::Camera;
+use crate::color::luminance;
 use crate::fog::Fog;
 use crate::hit::Hit;
-use crate::integrate::luminance;
-use crate::material::{Material, material_of};
-use crate::nearest::nearest_hit_in;
-use crate::ray::Ray;
-use crate::shading::shade;
-use crate::sky::Sky;
-use crate::sphere::Sphere;
-use crate::surface::Surface;
-use crate::tree::{Tree, nearest_hit_in_tree};
+use crate::light::sky::Sky;
 
 /// One launch: a tile of the image against a run of the spheres.
 ///
@@ -92,111 +84,6 @@ impl Pixel {
     #[must_use]
     pub fn is_written(&self) -> bool {
         self.depth() > 0.0
-    }
-}
-
-/// Renders one pixel of a launch: `pixel` counts from the upper left of the tile, `previous` is
-/// what the pixel holds so far, `shading` and `rung` are values of
-/// [`Shading::to_u32`](crate::Shading::to_u32) and
-/// [`Rung::to_u32`](crate::precision::Rung::to_u32). Returns what the pixel must hold now.
-///
-/// With `has_tree` 1 the spheres are those of `tree`, whatever run of them the launch names.
-/// `spheres` and `material_ids` run in parallel; an index into `materials` that leaves the
-/// table takes its last entry.
-#[expect(
-    clippy::too_many_arguments,
-    reason = "these are the kernel's bindings, one each"
-)]
-#[inline]
-#[must_use]
-pub fn render_pixel(
-    shading: u32,
-    rung: u32,
-    has_tree: u32,
-    launch: &Launch,
-    tree: Tree<'_>,
-    spheres: &[Sphere],
-    material_ids: &[u32],
-    materials: &[Material],
-    pixel: UVec2,
-    previous: &Pixel,
-) -> Pixel {
-    let ray = launch.ray(pixel, previous);
-    let hit = if has_tree == 1 {
-        nearest_hit_in_tree(rung, &ray, tree, spheres)
-    } else {
-        let (first, count) = (launch.first_sphere, launch.sphere_count);
-        nearest_hit_in(rung, &ray, spheres, first, count)
-    };
-    launch.pixel(
-        shading,
-        &ray,
-        hit,
-        spheres,
-        material_ids,
-        materials,
-        launch.unless_hit(previous),
-    )
-}
-
-impl Launch {
-    /// The ray through a pixel, which counts from the upper left of the tile and holds `previous`: not
-    /// farther than that. The first launch of a tile does not read it.
-    #[inline]
-    #[must_use]
-    pub fn ray(&self, pixel: UVec2, previous: &Pixel) -> Ray {
-        let at = self.tile_origin.wrapping_add(pixel);
-        let mut ray = self.camera.pixel_ray(at, self.image_size);
-        if self.first_of_tile == 0 {
-            ray.t_max = previous.depth();
-        }
-        ray
-    }
-
-    /// What a pixel that holds `previous` must hold if its ray hits nothing. The first launch of a tile does not read it.
-    #[inline]
-    #[must_use]
-    pub fn unless_hit(&self, previous: &Pixel) -> Pixel {
-        if self.first_of_tile == 0 {
-            *previous
-        } else {
-            self.blank()
-        }
-    }
-
-    /// A pixel without a sphere.
-    #[inline]
-    #[must_use]
-    pub fn blank(&self) -> Pixel {
-        Pixel::new(self.background, Hit::NONE_T)
-    }
-
-    /// What a pixel must hold after its ray has found `hit`, and `otherwise` if it found none.
-    #[expect(
-        clippy::too_many_arguments,
-        reason = "these are the kernel's bindings, one each"
-    )]
-    #[inline]
-    #[must_use]
-    pub fn pixel(
-        &self,
-        shading: u32,
-        ray: &Ray,
-        hit: Hit,
-        spheres: &[Sphere],
-        material_ids: &[u32],
-        materials: &[Material],
-        otherwise: Pixel,
-    ) -> Pixel {
-        let mut result = otherwise;
-        if hit.is_some() {
-            let index = hit.sphere as usize;
-            let sphere = read(spheres, index);
-            let material = material_of(index, material_ids, materials);
-            let surface = Surface::at(ray, hit.t, sphere);
-            result = Pixel::new(shade(shading, ray, hit.t, &surface, &material), hit.t);
-        }
-        result
     }
 }
 

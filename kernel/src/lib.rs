@@ -11,33 +11,23 @@
 //! | [`ray`] | [`Ray`]: an origin, a direction, an interval |
 //! | [`sphere`] | [`Sphere`]: a centre and a radius in one 16-byte load |
 //! | [`hit`] | [`Hit`]: how far along the ray, and which sphere |
+//! | [`camera`] | [`Camera`]: from a pixel to a ray |
+//! | [`surface`] | [`Surface`]: the point and the normal at a hit |
+//! | [`film`] | what a launch is told, what it writes |
+//! | [`pixel`] | from a pixel to its colour, with one ray a pixel |
+//! | [`shading`] | [`Shading`]: what the image shows of a hit |
+//! | [`effects`] | [`Effects`]: which effects exist in a compiled pipeline |
 //! | [`lane`] | [`lane::Lane`]: the numbers that formulas are written in, one or several side by side |
 //! | [`arithmetic`] | floats whose rounding errors are kept |
-//! | [`precision`] | the ladder: ways to intersect a ray with a sphere |
-//! | [`nearest`] | the nearest hit of a ray among a slice of spheres, and whether there is any |
-//! | [`bounds`] | what few operations tell of a ray and a sphere for certain |
-//! | [`candidates`], [`cone`] | which of many spheres a rung must be asked about: by any ray, by a camera's |
-//! | [`frustum`] | which spheres none of a tile's rays meets |
-//! | `by_tiles` | brute force by workgroups, which share what their pixels do not need to know each, behind the feature `entry-points` |
-//! | [`tree`] | [`tree::Node`]: boxes around spheres, so that a ray looks at few |
-//! | [`traversal`] | what finds the hits of light paths |
-//! | [`surface`] | the point and the normal at a hit |
-//! | [`camera`] | [`Camera`]: from a pixel to a ray |
-//! | [`material`] | [`Material`]: what a sphere is made of |
-//! | [`optics`] | refraction and reflection between transparent media |
-//! | [`shading`] | [`Shading`]: from a hit to a colour |
-//! | [`effects`] | [`Effects`]: which effects exist in a compiled pipeline |
-//! | [`random`] | the random numbers of a sample |
-//! | [`sampling`] | random directions |
-//! | [`microfacet`] | rough metal |
-//! | [`light`], [`sky`], [`fog`] | what shines, what surrounds the scene, what fills it |
-//! | [`integrate`] | light paths: what a pixel sees by all effects |
-//! | [`film`] | what a launch is told, what it writes |
-//! | [`canary`] | what a device does to the arithmetic that the ladder needs |
-//! | [`throughput`] | what a machine does at most, for `spherule bench` |
-//! | [`walk`] | a light path inside a glass sphere, for the hard cases |
-//! | [`layout`] | sizes and offsets of the shared types, as numbers |
-//! | `entry` | the `#[spirv]` entry points, behind the feature `entry-points` |
+//! | [`precision`] | the ladder: ways to intersect a ray with a sphere, one file a rung |
+//! | [`cull`] | what few operations tell for certain, so that the rung need not be asked |
+//! | [`accel`] | which spheres a ray is asked about: all, or those of the boxes that it meets |
+//! | [`path`] | light paths: what a pixel sees by all effects |
+//! | [`material`] | [`Material`]: what a sphere is made of, and how light is scattered there |
+//! | [`light`], [`fog`] | what shines and what surrounds the scene, what fills it |
+//! | [`color`] | luminance |
+//! | [`probe`] | what measures a device |
+//! | [`gpu`] | the `#[spirv]` entry points, behind the feature `entry-points`, and instructions that only a GPU has |
 //! | `spirv` | the committed modules, for the host only |
 //!
 //! # Units
@@ -53,45 +43,31 @@
 #[cfg(not(target_arch = "spirv"))]
 extern crate alloc;
 
+pub mod accel;
 pub mod arithmetic;
-pub mod bounds;
-#[cfg(all(feature = "entry-points", target_arch = "spirv"))]
-mod by_tiles;
 pub mod camera;
-pub mod canary;
-pub mod candidates;
-pub mod cone;
+pub mod color;
+pub mod cull;
 pub mod effects;
-#[cfg(all(feature = "entry-points", target_arch = "spirv"))]
-pub mod entry;
 pub mod film;
 pub mod fog;
-pub mod frustum;
+pub mod gpu;
 pub mod hit;
-pub mod instructions;
-pub mod integrate;
 pub mod lane;
-pub mod layout;
 pub mod light;
 pub mod material;
-pub mod microfacet;
-pub mod nearest;
-pub mod optics;
+pub mod path;
+pub mod pixel;
 pub mod precision;
-pub mod random;
+pub mod probe;
 pub mod ray;
-pub mod sampling;
 pub mod shading;
-pub mod sky;
 pub mod sphere;
 #[cfg(not(target_arch = "spirv"))]
 pub mod spirv;
 pub mod surface;
-pub mod throughput;
-pub mod traversal;
-pub mod tree;
-pub mod walk;
 
+pub use accel::brute::nearest_hit;
 pub use camera::Camera;
 pub use effects::Effects;
 pub use film::{Accumulator, Launch, PathLaunch, Pixel};
@@ -99,7 +75,6 @@ pub use glam;
 pub use hit::Hit;
 pub use light::Light;
 pub use material::Material;
-pub use nearest::nearest_hit;
 pub use precision::{Precision, Rung};
 pub use ray::Ray;
 pub use shading::Shading;

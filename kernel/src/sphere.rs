@@ -3,9 +3,6 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{Vec3, Vec4};
 
-use crate::precision::{Precision, Robust};
-use crate::ray::Ray;
-
 /// A sphere, stored as one [`Vec4`] so that a GPU fetches it with a single 16-byte load.
 ///
 /// The host makes the world out of this very type and uploads it as it is.
@@ -62,15 +59,6 @@ impl Sphere {
     #[must_use]
     pub fn is_valid(&self) -> bool {
         self.center_radius.is_finite() && self.radius() > 0.0
-    }
-
-    /// Where `ray` enters the sphere, or leaves it if it starts inside: the smaller root in the
-    /// ray's interval, as a parameter along the ray. [`Hit::NONE_T`](crate::Hit::NONE_T) if
-    /// there is none. This is the everyday rung of the ladder in [`crate::precision`].
-    #[inline]
-    #[must_use]
-    pub fn intersect(&self, ray: &Ray) -> f32 {
-        Robust::intersect(*self, ray)
     }
 
     /// Whether `point` is inside the sphere or on its surface.

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
-use spherule::accuracy::random::Random;
+use spherule::random::Random;
 
 /// An input that takes longer hangs. They are small, and take milliseconds.
 const HANGS: Duration = Duration::from_secs(20);

@@ -8,14 +8,16 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use driver::{Words, fuzz};
-use spherule::accuracy::random::Random;
+use spherule::accel::Acceleration;
+use spherule::kernel::accel::brute::{is_occluded, nearest_hit_in};
 use spherule::kernel::glam::Vec3;
-use spherule::kernel::nearest::{is_occluded, nearest_hit_in};
 use spherule::kernel::{Hit, Ray, Rung, Shading, Sphere};
+use spherule::look;
+use spherule::random::Random;
+use spherule::read::particles::{self, pdb, xyz};
+use spherule::read::{environment, toml};
 use spherule::render::{QUIET, Settings, render};
-use spherule::scene::molecule::{self, pdb, xyz};
-use spherule::scene::tree::Acceleration;
-use spherule::scene::{environment, limits, toml_file};
+use spherule::scene::limits;
 use spherule::trace::CpuTracer;
 use spherule::{Device, Error};
 
@@ -280,7 +282,7 @@ fn scene_file() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/fuzzed.toml");
     fuzz("scene_file", &words, |input| {
         let text = String::from_utf8_lossy(input).into_owned();
-        let mut scene = match toml_file::parse(&path, text) {
+        let mut scene = match toml::parse(&path, text) {
             Ok(scene) => scene,
             Err(error) => return outcome(&error),
         };
@@ -298,12 +300,12 @@ fn scene_file() {
 }
 
 /// Atoms that are read are a world that can be traced.
-fn atoms(atoms: &[molecule::Atom]) -> String {
+fn atoms(atoms: &[particles::Atom]) -> String {
     assert!(
         atoms.iter().all(|atom| atom.position.is_finite()),
         "{atoms:?}"
     );
-    let world = molecule::world(atoms);
+    let world = look::world(atoms);
     assert_eq!(world.spheres.len(), atoms.len());
     assert_eq!(world.material_ids.len(), atoms.len());
     assert!(

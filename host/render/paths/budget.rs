@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use rayon::prelude::*;
 use serde::Serialize;
 use spherule_kernel::Accumulator;
-use spherule_kernel::integrate::luminance;
+use spherule_kernel::color::luminance;
 
 /// How long the samples between two looks at the clock should take.
 const STRIDE: Duration = Duration::from_millis(200);

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use glam::UVec2;
 use rayon::prelude::*;
-use spherule_kernel::integrate::{Scenery, trace_pixel};
+use spherule_kernel::path::{Scenery, trace_pixel};
 use spherule_kernel::{Accumulator, Effects, PathLaunch, Rung};
 
 use super::budget::{Budget, Reached, StoppedBy, noise};
@@ -14,7 +14,7 @@ use super::{Prepared, Progress, Sampled, Settings};
 use crate::error::{Error, Result};
 use crate::film;
 use crate::render::Timings;
-use crate::render::check_path_launch;
+use crate::render::launch::check_path_launch;
 use crate::trace::levels::Levels;
 use crate::trace::single::Single;
 

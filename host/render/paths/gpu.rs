@@ -4,19 +4,19 @@ use std::cell::Cell;
 use std::time::{Duration, Instant};
 
 use glam::{UVec2, Vec4};
-use spherule_kernel::tree::Node;
+use spherule_kernel::accel::node::Node;
 use spherule_kernel::{Accumulator, Effects, Light, Material, PathLaunch, Sphere};
 
 use super::budget::{Budget, Reached, StoppedBy, noise};
 use super::preview::Preview;
 use super::{Prepared, Progress, Sampled, Settings};
-use crate::accuracy::canary::Canary;
+use crate::device::canary::Canary;
 use crate::device::{Access, Buffer, Gpu, Kernel, Staging};
 use crate::error::{Error, Result};
 use crate::film;
 use crate::kernel_module;
 use crate::render::Timings;
-use crate::render::check_path_launch;
+use crate::render::launch::check_path_launch;
 use crate::render::pace::Pace;
 use crate::render::tiles::Tiles;
 

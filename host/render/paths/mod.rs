@@ -19,7 +19,8 @@ use std::time::Instant;
 use rayon::prelude::*;
 use spherule_kernel::{Accumulator, Effects, Hit, Pixel, Shading};
 
-use super::{Progress, Rendered, Settings, Timings, memory_for};
+use super::room::memory_for;
+use super::{Progress, Rendered, Settings, Timings};
 use crate::device::Device;
 use crate::error::Result;
 use crate::film::Image;
@@ -28,38 +29,6 @@ use crate::scene::Scene;
 pub use budget::{Reached, StoppedBy};
 pub use prepare::Prepared;
 use preview::Preview;
-
-/// Which effects the pipeline is compiled for.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum EffectChoice {
-    /// Those that the scene calls for.
-    #[default]
-    Auto,
-    /// Every effect there is; those that the scene does not call for stay idle.
-    All,
-    /// Those of this set that the scene calls for; the others are left out of the image.
-    Only(Effects),
-}
-
-impl EffectChoice {
-    /// Of the effects that a scene calls for, those that its image shows.
-    #[must_use]
-    pub fn shown(self, called: Effects) -> Effects {
-        match self {
-            Self::Auto | Self::All => called,
-            Self::Only(effects) => called.within(effects),
-        }
-    }
-
-    /// The effects that the pipeline is compiled for.
-    #[must_use]
-    pub fn compiled(self, called: Effects) -> Effects {
-        match self {
-            Self::All => Effects::ALL,
-            Self::Auto | Self::Only(_) => self.shown(called),
-        }
-    }
-}
 
 /// What a device made of a scene.
 pub struct Sampled {

@@ -5,17 +5,17 @@ use std::f32::consts::PI;
 use std::sync::LazyLock;
 
 use glam::{DVec3, Vec3, Vec4};
+use spherule_kernel::color::luminance;
 use spherule_kernel::fog::Fog;
-use spherule_kernel::integrate::luminance;
-use spherule_kernel::microfacet::{ALBEDO_LEN, Albedo};
-use spherule_kernel::sky::Sky;
+use spherule_kernel::light::sky::Sky;
+use spherule_kernel::material::microfacet::{ALBEDO_LEN, Albedo};
 use spherule_kernel::{Effects, Light, Material, PathLaunch};
 
-use super::EffectChoice;
+use crate::accel::{self, Acceleration, Nodes};
 use crate::error::Result;
+use crate::render::EffectChoice;
 use crate::render::whole_image;
 use crate::scene::surroundings::EnvironmentImage;
-use crate::scene::tree::{self, Acceleration, Nodes};
 use crate::scene::{Scene, World};
 
 /// What the kernel is told of a scene, besides its world.
@@ -59,11 +59,11 @@ impl Prepared {
         } else {
             (0.0, 0.0)
         };
-        let (world, nodes) = match tree::grow(
+        let (world, nodes) = match accel::build(
             &scene.world.spheres,
             &scene.world.velocities,
             shutter,
-            acceleration.min_spheres(tree::MIN_SPHERES),
+            acceleration.min_spheres(accel::MIN_SPHERES),
         ) {
             Some(tree) => (tree.sort_world(&scene.world), tree.nodes),
             None => (scene.world.clone(), Nodes::default()),

@@ -15,3 +15,6 @@ pub mod error_free;
 pub mod strict;
 
 pub use double_single::DoubleSingle;
+
+/// The unit roundoff of `f32`: 2⁻²⁴, by which one operation may be off.
+pub const U: f32 = 1.0 / (1 << 24) as f32;

@@ -27,7 +27,7 @@
 use spirv_std::num_traits::Float as _;
 
 use super::compensated::Quadratic;
-use super::{Precision, choose_root};
+use super::root::{Precision, choose_root};
 use crate::arithmetic::DoubleSingle;
 use crate::arithmetic::distill::distill;
 use crate::arithmetic::elements::{get, set};

@@ -20,7 +20,7 @@
 #[cfg(target_arch = "spirv")]
 use spirv_std::num_traits::Float as _;
 
-use super::{Precision, choose_root};
+use super::root::{Precision, choose_root};
 use crate::arithmetic::DoubleSingle;
 use crate::arithmetic::strict::mul;
 use crate::hit::Hit;

@@ -5,7 +5,7 @@
 //! v (a r² + |k||o||d|), and c by a few v (o·o + r²). Each root is rounded to a float at the end.
 //! Vulkan promises little of 64-bit quotients and roots, so that one Newton step follows each.
 
-use super::{Precision, choose_root};
+use super::root::{Precision, choose_root};
 use crate::hit::Hit;
 use crate::lane::{Lane, Lane3};
 use crate::ray::Ray;

@@ -18,8 +18,10 @@ pub mod compensated;
 #[cfg(any(not(target_arch = "spirv"), feature = "f64"))]
 pub mod double;
 pub mod robust;
+pub mod root;
 pub mod textbook;
 
+#[cfg(all(target_arch = "spirv", not(feature = "f64")))]
 use crate::hit::Hit;
 use crate::ray::Ray;
 use crate::sphere::Sphere;
@@ -29,14 +31,8 @@ pub use compensated::Compensated;
 #[cfg(any(not(target_arch = "spirv"), feature = "f64"))]
 pub use double::Double;
 pub use robust::Robust;
+pub use root::Precision;
 pub use textbook::Textbook;
-
-/// One rung: a way to intersect a ray with a sphere.
-pub trait Precision {
-    /// The smaller root in the ray's interval as a parameter along the ray, or
-    /// [`Hit::NONE_T`]. A NaN anywhere is no hit.
-    fn intersect(sphere: Sphere, ray: &Ray) -> f32;
-}
 
 /// The rungs by name, as hosts and specialisation constants say them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
@@ -116,15 +112,13 @@ pub fn intersect(rung: u32, sphere: Sphere, ray: &Ray) -> f32 {
     }
 }
 
-/// The smaller of two roots that lies in the ray's interval, or [`Hit::NONE_T`]; `near ≤ far`
-/// where neither is NaN, and a NaN is in no interval.
-#[inline]
-#[must_use]
-pub fn choose_root(near: f32, far: f32, ray: &Ray) -> f32 {
-    let t = if near >= ray.t_min { near } else { far };
-    if (t >= ray.t_min) & (t < ray.t_max) {
-        t
-    } else {
-        Hit::NONE_T
+impl Sphere {
+    /// Where `ray` enters the sphere, or leaves it if it starts inside: the smaller root in the
+    /// ray's interval, as a parameter along the ray. [`Hit::NONE_T`](crate::Hit::NONE_T) if
+    /// there is none. This is the everyday rung of the ladder in [`crate::precision`].
+    #[inline]
+    #[must_use]
+    pub fn intersect(&self, ray: &Ray) -> f32 {
+        Robust::intersect(*self, ray)
     }
 }

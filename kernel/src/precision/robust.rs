@@ -11,7 +11,7 @@
 //! What is left is c itself: o·o − r² loses its digits where the origin is near the surface, and
 //! o = O − C is rounded. A huge ground sphere and a ray that starts on a surface need more.
 
-use super::{Precision, choose_root};
+use super::root::{Precision, choose_root};
 use crate::hit::Hit;
 use crate::lane::{Lane, Lane3};
 use crate::ray::Ray;

@@ -13,7 +13,7 @@
 #[cfg(target_arch = "spirv")]
 use spirv_std::num_traits::Float as _;
 
-use super::{Precision, choose_root};
+use super::root::{Precision, choose_root};
 use crate::hit::Hit;
 use crate::ray::Ray;
 use crate::sphere::Sphere;

@@ -7,35 +7,36 @@ use std::path::PathBuf;
 use std::sync::OnceLock;
 use std::time::Duration;
 
+use spherule::accel::{self, Acceleration, Nodes, Tree};
 use spherule::accuracy::cases::{Case, catalogue};
 use spherule::accuracy::measure::Measured;
 use spherule::accuracy::oracle::Intersection;
 use spherule::accuracy::price::Price;
-use spherule::accuracy::random::Random;
 use spherule::accuracy::report::{Family, Row};
 use spherule::accuracy::scene_cases::{SCENE_CASES, SceneCase};
 use spherule::bench::measure::Plan;
 use spherule::bench::scenes::BenchScene;
 use spherule::device::{Access, Buffer, Kernel, Module};
-use spherule::kernel::cone::{Cone, Sight};
-use spherule::kernel::frustum::{Frustum, Plane};
+use spherule::kernel::accel::brute::MovingSpheres;
+use spherule::kernel::accel::node::Node;
+use spherule::kernel::accel::traversal::OneByOne;
+use spherule::kernel::accel::walk::{self as kernel_tree};
+use spherule::kernel::cull::cone::{Cone, Sight};
+use spherule::kernel::cull::frustum::{Frustum, Plane};
 use spherule::kernel::glam::{UVec2, UVec3, UVec4, Vec2, Vec3, Vec4};
-use spherule::kernel::integrate::Scenery;
-use spherule::kernel::microfacet::{Albedo, RoughMetal};
-use spherule::kernel::nearest::MovingSpheres;
-use spherule::kernel::random::Sampler;
-use spherule::kernel::traversal::OneByOne;
-use spherule::kernel::tree::{self as kernel_tree, Node};
+use spherule::kernel::material::microfacet::{Albedo, RoughMetal};
+use spherule::kernel::path::Scenery;
+use spherule::kernel::path::random::Sampler;
 use spherule::kernel::{
     Accumulator, Camera, Effects, Launch, Light, Material, PathLaunch, Pixel, Rung, Shading, Sphere,
 };
+use spherule::random::Random;
+use spherule::read::particles::elements::{Element, UNKNOWN, by_number};
+use spherule::read::{FORMATS, Format};
+use spherule::render::EffectChoice;
 use spherule::render::pace::Pace;
-use spherule::render::paths::EffectChoice;
 use spherule::render::{cpu, gpu, paths};
-use spherule::scene::formats::{FORMATS, Format};
-use spherule::scene::molecule::elements::{Element, UNKNOWN, by_number};
 use spherule::scene::surroundings::{Develop, EnvironmentImage, Lens, Sun, Surroundings, Tonemap};
-use spherule::scene::tree::{self, Acceleration, Nodes, Tree};
 use spherule::scene::{FogBall, PointLight, Sampling, View, World};
 use spherule::trace::gpu::Batch;
 use spherule::trace::{CpuTracer, GpuTracer};
@@ -817,7 +818,7 @@ impl Odd for Tree {
         let mut spheres: Vec<Sphere> = Odd::odd(s);
         spheres.push(Odd::odd(s));
         let velocities: Vec<Vec3> = if s.one_in(2) { Vec::new() } else { Odd::odd(s) };
-        let tree = tree::grow(&spheres, &velocities, Odd::odd(s), 0);
+        let tree = accel::build(&spheres, &velocities, Odd::odd(s), 0);
         let mut tree = tree.unwrap_or_else(|| Self {
             nodes: Nodes::default(),
             order: Vec::new(),

@@ -135,7 +135,7 @@ const WRITTEN: &[(&str, &[&str])] = &[
         &["fit(&mut s.draw(), s.draw(), |_| Ok(s.draw()))"],
     ),
     (
-        "spherule::scene::tree::Tree::sort",
+        "spherule::accel::Tree::sort",
         &["sort(&s.draw(), &s.many::<u32>()[..])"],
     ),
 ];
@@ -153,20 +153,16 @@ const ARGUMENTS: &[(&str, &str, &str)] = &[
     ),
     ("spherule::render::gpu::time", "launch", "&s.launch()"),
     (
-        "spherule::scene::molecule::pdb::parse",
+        "spherule::read::particles::pdb::parse",
         "text",
         "&s.file(\"pdb\")",
     ),
     (
-        "spherule::scene::molecule::xyz::parse",
+        "spherule::read::particles::xyz::parse",
         "text",
         "&s.file(\"xyz\")",
     ),
-    (
-        "spherule::scene::toml_file::parse",
-        "text",
-        "s.file(\"toml\")",
-    ),
+    ("spherule::read::toml::parse", "text", "s.file(\"toml\")"),
     (
         "spherule::device::spirv::Module::from_bytes",
         "bytes",
@@ -190,7 +186,7 @@ const FEW: &[(&str, u64, u64)] = &[
 const BY_HAND: &[&str] = &[
     "spherule::accuracy::cases::Case",
     "spherule::accuracy::oracle::Intersection",
-    "spherule::accuracy::random::Random",
+    "spherule::random::Random",
     "spherule::accuracy::scene_cases::SceneCase",
     "spherule::bench::measure::Plan",
     "spherule::bench::scenes::BenchScene",
@@ -201,24 +197,24 @@ const BY_HAND: &[&str] = &[
     "spherule::render::pace::Pace",
     "spherule::render::paths::prepare::Prepared",
     "spherule::scene::Scene",
-    "spherule::scene::formats::Format",
-    "spherule::scene::tree::Nodes",
-    "spherule::scene::tree::Tree",
+    "spherule::read::Format",
+    "spherule::accel::Nodes",
+    "spherule::accel::Tree",
     "spherule::scene::world::World",
     "spherule::trace::cpu::CpuTracer",
     "spherule::trace::gpu::Batch",
     "spherule::trace::gpu::GpuTracer",
     "spherule_kernel::camera::Camera",
-    "spherule_kernel::cone::Cone",
-    "spherule_kernel::cone::Sight",
+    "spherule_kernel::cull::cone::Cone",
+    "spherule_kernel::cull::cone::Sight",
     "spherule_kernel::effects::Effects",
     "spherule_kernel::film::Accumulator",
     "spherule_kernel::film::Pixel",
-    "spherule_kernel::frustum::Frustum",
-    "spherule_kernel::frustum::Plane",
+    "spherule_kernel::cull::frustum::Frustum",
+    "spherule_kernel::cull::frustum::Plane",
     "spherule_kernel::material::Material",
-    "spherule_kernel::microfacet::RoughMetal",
-    "spherule_kernel::random::Sampler",
+    "spherule_kernel::material::microfacet::RoughMetal",
+    "spherule_kernel::path::random::Sampler",
     "spherule_kernel::sphere::Sphere",
 ];
 
@@ -235,13 +231,13 @@ const ALSO: &[&str] = &[
 /// Types that borrow: what owns the parts of one, in `src/odd.rs`.
 const OWNED: &[(&str, &str)] = &[
     ("spherule::render::cpu::Prepared", "OddPrepared"),
-    ("spherule_kernel::integrate::Scenery", "OddScenery"),
+    ("spherule_kernel::path::Scenery", "OddScenery"),
     (
-        "spherule_kernel::nearest::MovingSpheres",
+        "spherule_kernel::accel::brute::MovingSpheres",
         "OddMovingSpheres",
     ),
-    ("spherule_kernel::traversal::OneByOne", "OddOneByOne"),
-    ("spherule_kernel::tree::Tree", "OddTree"),
+    ("spherule_kernel::accel::traversal::OneByOne", "OddOneByOne"),
+    ("spherule_kernel::accel::node::Tree", "OddTree"),
 ];
 
 /// Types that are given as they are.

@@ -1,0 +1,356 @@
+//! The canary's report: what this device does to the arithmetic of the upper rungs, measured
+//! before any of them is trusted.
+//!
+//! Vulkan promises correctly rounded sums and products, and lets a driver divide with 2.5 units
+//! in the last place of error, flush subnormals, fuse and cancel. What a given driver does is
+//! known only by looking. A rung whose needs are not met on a device is refused there.
+
+use serde::Serialize;
+use spherule_kernel::Rung;
+use spherule_kernel::probe::canary::{Operands, Outcome, WideOutcome, sing, sing_wide};
+
+use crate::device::{Access, Device, Gpu};
+use crate::error::{Error, Result};
+use crate::kernel_module;
+use crate::random::Random;
+use crate::ulp;
+
+/// How many pairs of numbers are tried.
+const COUNT: usize = 1 << 14;
+
+/// A count of what was right, out of how many.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Share {
+    /// How many were right.
+    pub exact: usize,
+    /// How many were tried.
+    pub tried: usize,
+}
+
+impl Share {
+    /// Whether all were right, and there were any.
+    #[must_use]
+    pub fn is_whole(self) -> bool {
+        self.tried > 0 && self.exact == self.tried
+    }
+}
+
+/// What a device does.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Canary {
+    /// Sums and differences whose error term is exact.
+    pub sums: Share,
+    /// Products whose error term is exact.
+    pub products: Share,
+    /// Splits into exact halves of 12 bits.
+    pub splits: Share,
+    /// Quotients rounded correctly.
+    pub quotients: Share,
+    /// The worst quotient, in units in the last place.
+    pub quotient_ulps: u32,
+    /// Square roots rounded correctly.
+    pub roots: Share,
+    /// The worst square root, in units in the last place.
+    pub root_ulps: u32,
+    /// Whether a NaN differs from itself. No rung depends on it: they take a root only where
+    /// comparisons that a NaN fails hold.
+    pub finds_nan: bool,
+    /// Whether subnormal results survive. No rung depends on it inside its domain.
+    pub keeps_subnormals: bool,
+    /// 64-bit results that are those of IEEE 754; `None` without 64-bit floats.
+    pub wide: Option<Share>,
+}
+
+impl Canary {
+    /// Lets the canary sing on `device`.
+    ///
+    /// # Errors
+    ///
+    /// The device's errors.
+    pub fn on(device: &Device) -> Result<Self> {
+        let operands = operands();
+        match device {
+            Device::Cpu => {
+                let outcomes: Vec<Outcome> = operands.iter().map(|o| sing(*o)).collect();
+                let wide: Vec<WideOutcome> = operands.iter().map(|o| sing_wide(*o)).collect();
+                Ok(Self::judge(&operands, &outcomes, Some(&wide)))
+            }
+            Device::Gpu(gpu) => Self::on_gpu(gpu),
+        }
+    }
+
+    /// Refuses `rung` on this GPU if the canary objects; measures only what the rung needs, which is
+    /// nothing for the lower rungs.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::RungRefused`], and the device's errors.
+    pub fn require_on_gpu(gpu: &Gpu, rung: Rung) -> Result<()> {
+        match rung {
+            Rung::Textbook | Rung::Robust => Ok(()),
+            Rung::Compensated | Rung::Certified => {
+                Self::measure(gpu, false)?.require(rung, gpu.name())
+            }
+            Rung::Double => Self::measure(gpu, gpu.has_f64())?.require(rung, gpu.name()),
+        }
+    }
+
+    /// Lets the canary sing on this GPU.
+    ///
+    /// # Errors
+    ///
+    /// The device's errors.
+    pub fn on_gpu(gpu: &Gpu) -> Result<Self> {
+        Self::measure(gpu, gpu.has_f64())
+    }
+
+    fn measure(gpu: &Gpu, with_f64: bool) -> Result<Self> {
+        let operands = operands();
+        let bindings = [Access::Read, Access::ReadWrite];
+        let input = gpu.upload("operands", &operands)?;
+        let output = gpu.zeroed::<Outcome>("outcomes", operands.len())?;
+        let threads = [operands.len() as u32, 1, 1];
+
+        let kernel = gpu.kernel(&kernel_module::f32()?, "measure_arithmetic", &bindings)?;
+        gpu.launch(
+            &kernel,
+            &[input.binding(), output.binding()],
+            kernel.workgroups_for(threads),
+        )?;
+        let outcomes = gpu.read(&output)?;
+
+        let wide = if with_f64 {
+            let output = gpu.zeroed::<WideOutcome>("wide outcomes", operands.len())?;
+            let kernel =
+                gpu.kernel(&kernel_module::f64()?, "measure_wide_arithmetic", &bindings)?;
+            gpu.launch(
+                &kernel,
+                &[input.binding(), output.binding()],
+                kernel.workgroups_for(threads),
+            )?;
+            Some(gpu.read(&output)?)
+        } else {
+            None
+        };
+        Ok(Self::judge(&operands, &outcomes, wide.as_deref()))
+    }
+
+    fn judge(operands: &[Operands], outcomes: &[Outcome], wide: Option<&[WideOutcome]>) -> Self {
+        let mut canary = Self {
+            sums: Share::default(),
+            products: Share::default(),
+            splits: Share::default(),
+            quotients: Share::default(),
+            quotient_ulps: 0,
+            roots: Share::default(),
+            root_ulps: 0,
+            finds_nan: true,
+            keeps_subnormals: true,
+            wide: None,
+        };
+        let count = |share: &mut Share, right: bool| {
+            share.exact += usize::from(right);
+            share.tried += 1;
+        };
+        for (Operands { a, b }, outcome) in operands.iter().zip(outcomes) {
+            if a.is_nan() {
+                canary.finds_nan &= outcome.equals_itself == 0;
+                continue;
+            }
+            // f64 holds sums of these floats, and all their products, exactly.
+            let (wide_a, wide_b) = (f64::from(*a), f64::from(*b));
+            let holds = |pair: [f32; 2], exact: f64| {
+                pair[0] == exact as f32 && f64::from(pair[0]) + f64::from(pair[1]) == exact
+            };
+            count(
+                &mut canary.sums,
+                holds(outcome.sum, wide_a + wide_b) && holds(outcome.difference, wide_a - wide_b),
+            );
+            count(
+                &mut canary.products,
+                holds(outcome.product, wide_a * wide_b),
+            );
+            let [high, low] = outcome.halves;
+            let fits = |half: f32| (half.to_bits() & 0x0fff) == 0;
+            count(
+                &mut canary.splits,
+                high + low == *a && fits(high) && fits(low),
+            );
+            let distance = ulp::distance(outcome.quotient, a / b);
+            count(&mut canary.quotients, distance == 0);
+            canary.quotient_ulps = canary.quotient_ulps.max(distance);
+            let distance = ulp::distance(outcome.root, a.abs().sqrt());
+            count(&mut canary.roots, distance == 0);
+            canary.root_ulps = canary.root_ulps.max(distance);
+            let small = a * 2.0_f32.powi(-100);
+            if small.is_subnormal() {
+                canary.keeps_subnormals &= outcome.small_product == small.to_bits();
+            }
+        }
+        canary.wide = wide.map(|wide| {
+            let mut share = Share::default();
+            for (operands, outcome) in operands.iter().zip(wide) {
+                if operands.a.is_nan() {
+                    continue;
+                }
+                let expected = sing_wide(*operands);
+                let near = |found: f64, right: f64| {
+                    found == right || (found / right - 1.0).abs() <= 2.0 * f64::EPSILON
+                };
+                count(
+                    &mut share,
+                    outcome.sum == expected.sum
+                        && outcome.product == expected.product
+                        && near(outcome.quotient, expected.quotient)
+                        && near(outcome.root, expected.root),
+                );
+            }
+            share
+        });
+        canary
+    }
+
+    /// Why `rung` cannot be trusted here; `None` if it can.
+    #[must_use]
+    pub fn objection(&self, rung: Rung) -> Option<String> {
+        let broken = |what: &str, share: Share| {
+            format!(
+                "the error terms of {what} are exact in {} of {} tries: the driver rearranges them",
+                share.exact, share.tried
+            )
+        };
+        match rung {
+            Rung::Textbook | Rung::Robust => None,
+            Rung::Compensated | Rung::Certified => {
+                if !self.sums.is_whole() {
+                    Some(broken("sums", self.sums))
+                } else if !self.products.is_whole() {
+                    Some(broken("products", self.products))
+                // One correction squares the relative error, 2⁻²⁰ at the worst allowed here, and t
+                // needs 2⁻²⁶.
+                } else if self.quotient_ulps > 16 || self.root_ulps > 16 {
+                    Some(format!(
+                        "quotients are off by up to {} ulp and square roots by up to {}, too many for one correction",
+                        self.quotient_ulps, self.root_ulps
+                    ))
+                } else {
+                    None
+                }
+            }
+            Rung::Double => match self.wide {
+                None => Some("the device has no 64-bit floats".into()),
+                Some(share) if !share.is_whole() => Some(format!(
+                    "64-bit results are right in {} of {} tries",
+                    share.exact, share.tried
+                )),
+                Some(_) => None,
+            },
+        }
+    }
+
+    /// [`Canary::objection`] as an error.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::RungRefused`].
+    pub fn require(&self, rung: Rung, device: &str) -> Result<()> {
+        match self.objection(rung) {
+            None => Ok(()),
+            Some(reason) => Err(Error::RungRefused {
+                rung,
+                device: device.into(),
+                reason,
+            }),
+        }
+    }
+}
+
+/// Pairs whose sums need 24 to 48 bits, pairs whose quotients and roots are anything, small
+/// numbers, and NaNs.
+fn operands() -> Vec<Operands> {
+    let mut random = Random::new(0x5eed);
+    (0..COUNT)
+        .map(|index| match index % 16 {
+            // Small enough that 2⁻¹⁰⁰ times it is subnormal.
+            0 => Operands {
+                a: random.within(1.0, 2.0) * 2.0_f32.powi(-30),
+                b: random.within(1.0, 2.0) * 2.0_f32.powi(-30),
+            },
+            1 => Operands {
+                a: f32::NAN,
+                b: 1.0,
+            },
+            _ => {
+                // Exponents at most 27 apart, so that f64 holds the sum exactly.
+                let sign = if random.next_u32().is_multiple_of(2) {
+                    1.0
+                } else {
+                    -1.0
+                };
+                let exponent = (random.next_u32() % 28) as i32;
+                Operands {
+                    a: random.within(1.0, 2.0) * sign,
+                    b: random.within(1.0, 2.0) * 2.0_f32.powi(-exponent),
+                }
+            }
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_cpu_keeps_to_ieee_754() {
+        let canary = Canary::on(&Device::Cpu).expect("the CPU");
+        for share in [
+            canary.sums,
+            canary.products,
+            canary.splits,
+            canary.quotients,
+            canary.roots,
+            canary.wide.expect("the CPU has 64-bit floats"),
+        ] {
+            assert!(share.is_whole(), "{canary:?}");
+        }
+        assert!(canary.finds_nan && canary.keeps_subnormals);
+        for rung in Rung::ALL {
+            assert_eq!(canary.objection(rung), None);
+        }
+    }
+
+    /// The canary must notice each thing that it is there for.
+    #[test]
+    fn a_broken_device_is_noticed() {
+        let operands = operands();
+        let good: Vec<Outcome> = operands.iter().map(|o| sing(*o)).collect();
+        let with = |change: fn(&mut Outcome)| {
+            let mut bad = good.clone();
+            bad.iter_mut().for_each(change);
+            Canary::judge(&operands, &bad, None)
+        };
+        let no_error_of_sums = with(|outcome| outcome.sum[1] = 0.0);
+        assert!(
+            no_error_of_sums
+                .objection(Rung::Compensated)
+                .is_some_and(|why| why.contains("sums"))
+        );
+        let no_error_of_products = with(|outcome| outcome.product[1] = 0.0);
+        assert!(
+            no_error_of_products
+                .objection(Rung::Compensated)
+                .is_some_and(|why| why.contains("products"))
+        );
+        assert!(!with(|outcome| outcome.halves[1] = 0.0).splits.is_whole());
+        let coarse = with(|outcome| outcome.quotient *= 1.0001);
+        assert!(
+            coarse
+                .objection(Rung::Compensated)
+                .is_some_and(|why| why.contains("quotients"))
+        );
+        assert!(!with(|outcome| outcome.equals_itself = 1).finds_nan);
+        assert!(!with(|outcome| outcome.small_product = 0).keeps_subnormals);
+        assert!(with(|_| ()).objection(Rung::Double).is_some());
+    }
+}

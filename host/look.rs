@@ -1,0 +1,112 @@
+//! What particles look like: atoms become spheres with the van der Waals radius and the colour of their
+//! element. One scene unit is one ångström.
+
+use glam::Vec3;
+use rayon::prelude::*;
+use spherule_kernel::{Material, Sphere};
+
+use crate::film::encode::from_srgb;
+use crate::plural::count_of;
+use crate::read::particles::Atom;
+use crate::read::particles::elements::{self, Element};
+use crate::scene::World;
+use crate::scene::world::GRAIN;
+
+/// A world of these atoms, with one material for each element that occurs.
+#[must_use]
+pub fn world(atoms: &[Atom]) -> World {
+    let mut world = World::default();
+    let elements = elements_of(atoms);
+    let is_unknown = |element: &Element| element.symbol == elements::UNKNOWN.symbol;
+    if elements.iter().any(|element| is_unknown(element)) {
+        let unknown = atoms
+            .par_iter()
+            .filter(|atom| is_unknown(atom.element))
+            .count();
+        tracing::warn!(
+            "{} of an element that cannot be told: drawn pink, with a radius of {} Å",
+            count_of(unknown, "atom"),
+            elements::UNKNOWN.radius
+        );
+    }
+    // Each element's material has its place among them.
+    for element in &elements {
+        world.add_material(Material::diffuse(linear(element.color)));
+    }
+    let id_of = |atom: &Atom| {
+        let is_its = |element: &&Element| element.symbol == atom.element.symbol;
+        elements.iter().position(is_its).map_or(0, |id| id as u32)
+    };
+    let atoms = || atoms.par_iter().with_min_len(GRAIN);
+    world.spheres = atoms()
+        .map(|atom| Sphere::new(atom.position, atom.element.radius))
+        .collect();
+    world.material_ids = atoms().map(id_of).collect();
+    world
+}
+
+/// The elements that occur, in the order in which they do: few, so that looking through them is fastest.
+fn elements_of(atoms: &[Atom]) -> Vec<&'static Element> {
+    let add = |mut known: Vec<&'static Element>, element: &'static Element| {
+        if !known.iter().any(|other| other.symbol == element.symbol) {
+            known.push(element);
+        }
+        known
+    };
+    atoms
+        .par_chunks(GRAIN)
+        .map(|some| some.iter().map(|atom| atom.element).fold(Vec::new(), add))
+        .reduce(Vec::new, |before, after| {
+            after.into_iter().fold(before, add)
+        })
+}
+
+/// From `0xRRGGBB` in sRGB to linear Rec. 709.
+fn linear(color: u32) -> Vec3 {
+    let channel = |shift: u32| from_srgb(((color >> shift) & 0xff) as f32 / 255.0);
+    Vec3::new(channel(16), channel(8), channel(0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::film::encode::srgb;
+
+    #[test]
+    fn colours_survive_the_round_trip() {
+        for color in [0x00_00_00, 0xFF_FF_FF, 0x90_90_90, 0xFF_0D_0D, 0x01_02_0A] {
+            let back = linear(color)
+                .to_array()
+                .map(|channel| (srgb(channel) * 255.0).round() as u32);
+            assert_eq!(back, [color >> 16, (color >> 8) & 0xff, color & 0xff]);
+        }
+    }
+
+    #[test]
+    fn equal_elements_share_a_material() {
+        let carbon = elements::by_symbol("c").expect("carbon");
+        let atom = Atom {
+            position: Vec3::ZERO,
+            element: carbon,
+        };
+        let world = world(&[atom, atom]);
+        assert_eq!(world.materials.len(), 1);
+        assert_eq!(world.material_ids, [0, 0]);
+        assert_eq!(world.spheres[0].radius(), 1.7);
+    }
+
+    #[test]
+    fn materials_stand_in_the_order_of_their_first_atoms() {
+        let symbols = ["o", "h", "c", "h"];
+        let atoms: Vec<Atom> = symbols
+            .iter()
+            .flat_map(|symbol| {
+                let element = elements::by_symbol(symbol).expect("an element");
+                let position = Vec3::ZERO;
+                std::iter::repeat_n(Atom { position, element }, GRAIN)
+            })
+            .collect();
+        let ids = world(&atoms).material_ids;
+        assert_eq!([0, 1, 2, 3].map(|run| ids[run * GRAIN]), [0, 1, 2, 1]);
+    }
+}

@@ -1,0 +1,60 @@
+//! Files: what a scene is read from.
+//!
+//! | module | reads |
+//! | --- | --- |
+//! | [`toml`] | scenes written by a person, which may name other files |
+//! | [`particles`] | atoms, in one of several formats |
+//! | [`environment`] | images of the surroundings |
+//! | `text` | text files of any size, compressed or not |
+
+pub mod environment;
+pub mod particles;
+pub(crate) mod text;
+pub mod toml;
+
+use std::path::Path;
+
+use crate::error::{Error, Result, SceneError};
+use crate::look;
+use crate::scene::Scene;
+use text::{COMPRESSED, extension, uncompressed};
+
+/// The extension of scenes in TOML.
+const SCENE: &str = "toml";
+
+impl Scene {
+    /// Reads a scene, or particles in one of the [`FORMATS`](particles::FORMATS).
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Scene`] says which file is wrong, where in it, and how to mend it.
+    pub fn load(path: impl AsRef<Path>) -> Result<Self> {
+        let path = path.as_ref();
+        let mut scene = if is_scene(path) {
+            toml::load(path)?
+        } else if let Some(format) = particles::Format::of(path) {
+            Self::new(look::world(&format.load(path)?))
+        } else {
+            return Err(Error::Scene(SceneError::without_place(
+                path,
+                "not a kind of file that spherule reads",
+                format!("give a {}", inputs()),
+            )));
+        };
+        scene.sources.push(path.into());
+        Ok(scene)
+    }
+}
+
+/// Whether a file is a scene by its name.
+#[must_use]
+pub fn is_scene(path: &Path) -> bool {
+    extension(uncompressed(path)) == SCENE
+}
+
+/// What may be given where a scene is asked for: `scene (.toml) or molecule (.pdb, …)`.
+#[must_use]
+pub fn inputs() -> String {
+    let molecules = particles::extensions();
+    format!("scene (.{SCENE}) or molecule ({molecules}), also compressed (.{COMPRESSED})")
+}

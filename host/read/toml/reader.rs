@@ -1,0 +1,338 @@
+//! Checks values, and points at them where they are wrong.
+
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+use glam::Vec3;
+use serde::de::DeserializeOwned;
+use toml::Spanned;
+
+use super::split::Piece;
+use super::value::{DATE, Value, said};
+use crate::error::{Error, Place, Result, SceneError};
+use crate::plural::count_of;
+use crate::scene::limits;
+use crate::shown::{shown, shown_up_to};
+
+/// Checks values, knowing the text that they came from.
+#[derive(Clone, Copy)]
+pub(super) struct Reader<'a> {
+    pub(super) path: &'a Path,
+    pub(super) text: &'a str,
+    /// What was parsed, of the text.
+    pub(super) pieces: &'a [Piece],
+}
+
+impl Reader<'_> {
+    /// Parses a text made of the pieces.
+    pub(super) fn read<T: DeserializeOwned>(&self, text: &str) -> Result<T> {
+        toml::from_str(text).map_err(|error| {
+            let message = plain(error.message().trim());
+            let help = help_for_toml(&message);
+            let message = shown_up_to(&message, 400).into_owned();
+            // The parser does not say where everything is.
+            let Some(span) = error.span() else {
+                return SceneError::without_place(self.path, message, help).into();
+            };
+            self.wrong_at(span, message, "here", help).into()
+        })
+    }
+
+    /// The file that the scene names: its name counts from the scene's directory.
+    pub(super) fn beside(&self, name: &str) -> PathBuf {
+        self.path.parent().unwrap_or(Path::new("")).join(name)
+    }
+
+    /// What a value of this name may not be.
+    pub(super) fn not_a(&self, name: &str, value: &Spanned<Value>, wanted: &str) -> Error {
+        let (said, value_kind) = (value.get_ref().said(), value.get_ref());
+        let help = match value_kind {
+            Value::Text(text)
+                if text.trim().parse::<f64>().is_ok() && wanted.contains("number") =>
+            {
+                "write it without quotes".into()
+            }
+            Value::Whole(_) | Value::Number(_) if wanted == "a text" => "write it in quotes".into(),
+            _ => format!("give {wanted}"),
+        };
+        self.wrong(
+            value,
+            format!("{name} is {said}, not {wanted}"),
+            format!("not {wanted}"),
+            help,
+        )
+        .into()
+    }
+
+    pub(super) fn text<'v>(&self, name: &str, value: &'v Spanned<Value>) -> Result<&'v str> {
+        match value.get_ref() {
+            Value::Text(text) => Ok(text),
+            _ => Err(self.not_a(name, value, "a text")),
+        }
+    }
+
+    /// What one of these texts stands for.
+    pub(super) fn one_of<T: Copy>(
+        &self,
+        name: &str,
+        value: &Spanned<Value>,
+        texts: &[(&str, T)],
+    ) -> Result<T> {
+        let text = self.text(name, value)?;
+        if let Some((_, meaning)) = texts.iter().find(|(known, _)| *known == text) {
+            return Ok(*meaning);
+        }
+        let known: Vec<String> = texts
+            .iter()
+            .map(|(text, _)| format!("\"{text}\""))
+            .collect();
+        Err(self
+            .wrong(
+                value,
+                format!("there is no {name} \"{}\"", shown(text)),
+                "not known",
+                format!("give one of {}", known.join(", ")),
+            )
+            .into())
+    }
+
+    pub(super) fn whole(
+        &self,
+        name: &str,
+        value: &Spanned<Value>,
+        low: u32,
+        high: u32,
+    ) -> Result<u32> {
+        let out_of_range = || {
+            self.wrong(
+                value,
+                format!("{name} = {} is not possible", value.get_ref().said()),
+                "out of range",
+                format!("give a whole number from {low} to {high}"),
+            )
+            .into()
+        };
+        match value.get_ref() {
+            Value::Whole(whole) => u32::try_from(*whole)
+                .ok()
+                .filter(|whole| (low..=high).contains(whole))
+                .ok_or_else(out_of_range),
+            // Integers that have no room in 64 bits.
+            Value::Number(number) if number.abs() >= 1e18 => Err(out_of_range()),
+            _ => Err(self.not_a(name, value, "a whole number")),
+        }
+    }
+
+    pub(super) fn number(
+        &self,
+        name: &str,
+        value: &Spanned<Value>,
+        range: limits::Range,
+    ) -> Result<f32> {
+        let Some(number) = value.get_ref().number() else {
+            return Err(self.not_a(name, value, "a number"));
+        };
+        if range.holds(number as f32) {
+            return Ok(number as f32);
+        }
+        Err(self
+            .wrong(
+                value,
+                format!("{name} = {} is not possible", said(number)),
+                "out of range",
+                format!("give a number {range}"),
+            )
+            .into())
+    }
+
+    pub(super) fn side(&self, name: &str, value: &Spanned<Value>) -> Result<u32> {
+        self.whole(name, value, 1, limits::MAX_IMAGE_SIDE)
+    }
+
+    /// A vector in space.
+    pub(super) fn vector(&self, name: &str, value: &Spanned<Value>) -> Result<Vec3> {
+        let vector = self.three(name, value)?;
+        if !limits::COORDINATE.holds_all(vector) {
+            return Err(self
+                .wrong(
+                    value,
+                    format!("{name} is too large"),
+                    "out of range",
+                    format!(
+                        "give numbers {}: use a larger unit of length",
+                        limits::COORDINATE
+                    ),
+                )
+                .into());
+        }
+        Ok(vector)
+    }
+
+    /// Three finite numbers.
+    pub(super) fn three(&self, name: &str, value: &Spanned<Value>) -> Result<Vec3> {
+        let numbers = match value.get_ref() {
+            Value::List(numbers, None) => numbers,
+            Value::List(_, Some(other)) => {
+                return Err(self
+                    .wrong(
+                        value,
+                        format!("{name} holds {other}, not three numbers"),
+                        "not three numbers",
+                        "give three numbers: [x, y, z], or [red, green, blue]",
+                    )
+                    .into());
+            }
+            _ => return Err(self.not_a(name, value, "a list of three numbers")),
+        };
+        let Ok([x, y, z]) = <[f64; 3]>::try_from(&numbers[..]) else {
+            let count = count_of(numbers.len(), "number");
+            return Err(self
+                .wrong(
+                    value,
+                    format!("{name} has {count}"),
+                    "not three",
+                    "give three numbers: [x, y, z], or [red, green, blue]",
+                )
+                .into());
+        };
+        let vector = Vec3::new(x as f32, y as f32, z as f32);
+        if !vector.is_finite() {
+            return Err(self
+                .wrong(
+                    value,
+                    format!("{name} is not finite"),
+                    "NaN, infinite or too large",
+                    "give three numbers that 32-bit floats can hold",
+                )
+                .into());
+        }
+        Ok(vector)
+    }
+
+    /// Red, green and blue, each in the range.
+    pub(super) fn color(
+        &self,
+        name: &str,
+        value: &Spanned<Value>,
+        range: limits::Range,
+    ) -> Result<Vec3> {
+        let color = self.three(name, value)?;
+        if range.holds_all(color) {
+            return Ok(color);
+        }
+        let (message, label) = if color.min_element() < range.low {
+            (format!("{name} has a channel below zero"), "negative")
+        } else if range == limits::REFLECTANCE {
+            (
+                format!("{name} has a channel above one"),
+                "gives back more light than it receives",
+            )
+        } else {
+            (
+                format!("{name} has a channel above {:e}", range.high),
+                "too large",
+            )
+        };
+        let help = if range == limits::REFLECTANCE {
+            "give linear red, green and blue between 0 and 1 (divide 8-bit values by 255 and undo the sRGB curve)".into()
+        } else {
+            format!("give linear red, green and blue, each {range}")
+        };
+        Err(self.wrong(value, message, label, help).into())
+    }
+
+    /// A radiance times a strength.
+    pub(super) fn radiance(
+        &self,
+        name: &str,
+        value: &Spanned<Value>,
+        strength: f32,
+    ) -> Result<Vec3> {
+        let radiance = self.color(name, value, limits::RADIANCE)? * strength;
+        if limits::RADIANCE.holds_all(radiance) {
+            return Ok(radiance);
+        }
+        Err(self
+            .wrong(
+                value,
+                format!("{name} times a strength of {strength:e} is too bright"),
+                "too large",
+                format!(
+                    "give a smaller strength: the product is at most {:e}",
+                    limits::MAX_RADIANCE
+                ),
+            )
+            .into())
+    }
+
+    pub(super) fn wrong<T>(
+        &self,
+        value: &Spanned<T>,
+        message: impl Into<String>,
+        label: impl Into<String>,
+        help: impl Into<String>,
+    ) -> Box<SceneError> {
+        self.wrong_at(value.span(), message, label, help)
+    }
+
+    /// What is wrong with these bytes of what was parsed.
+    pub(super) fn wrong_at(
+        &self,
+        span: Range<usize>,
+        message: impl Into<String>,
+        label: impl Into<String>,
+        help: impl Into<String>,
+    ) -> Box<SceneError> {
+        Box::new(SceneError {
+            path: self.path.into(),
+            message: message.into(),
+            help: help.into(),
+            place: Some(Place {
+                text: self.text.to_owned(),
+                span: self.in_file(span.start)
+                    ..self.in_file(span.end).max(self.in_file(span.start)),
+                label: label.into(),
+            }),
+        })
+    }
+
+    /// Where in the file a byte is that was parsed.
+    fn in_file(&self, at: usize) -> usize {
+        let piece = self.pieces.iter().rev().find(|piece| piece.start <= at);
+        piece.map_or(at, |piece| piece.range.start + (at - piece.start))
+    }
+}
+
+fn help_for_toml(message: &str) -> String {
+    if message.contains("unknown field") {
+        "check the spelling; docs/scenes.md lists every key".into()
+    } else if message.contains("missing field") {
+        "add it; docs/scenes.md lists every key".into()
+    } else {
+        "the README shows a whole scene; tables are [name], spheres are [[sphere]], texts stand in quotes".into()
+    }
+}
+
+/// serde's words, and the parser's, in plain ones.
+fn plain(message: &str) -> String {
+    let mut message = message.to_owned();
+    if message.contains(DATE) {
+        return "this is a date or time, not a table".into();
+    }
+    for (theirs, ours) in [
+        ("invalid type: ", "this is "),
+        (", expected a sequence", ", not a list"),
+        (", expected a table", ", not a table"),
+        (", expected a map", ", not a table"),
+        ("integer `", "the whole number `"),
+        ("floating point `", "the number `"),
+        ("boolean `", "`"),
+        ("this is string ", "this is the text "),
+        ("this is map", "this is a table"),
+        ("this is sequence", "this is a list"),
+        ("recursion limit", "a key has more than 80 parts"),
+    ] {
+        message = message.replacen(theirs, ours, 1);
+    }
+    message
+}

@@ -1,0 +1,119 @@
+//! The table `[sky]`.
+
+use glam::Vec3;
+use serde::Deserialize;
+use toml::Spanned;
+
+use super::reader::Reader;
+use super::value::Value;
+use crate::error::{Error, Result};
+use crate::read::environment;
+use crate::scene::limits;
+use crate::scene::surroundings::{Sun, Surroundings};
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table")]
+pub(super) struct SkyTable {
+    pub(super) horizon: Option<Spanned<Value>>,
+    pub(super) zenith: Option<Spanned<Value>>,
+    pub(super) sun_direction: Option<Spanned<Value>>,
+    pub(super) sun_size: Option<Spanned<Value>>,
+    pub(super) sun_irradiance: Option<Spanned<Value>>,
+    pub(super) image: Option<Spanned<Value>>,
+    pub(super) strength: Option<Spanned<Value>>,
+}
+
+impl Reader<'_> {
+    pub(super) fn sky(&self, table: &Spanned<SkyTable>) -> Result<Surroundings> {
+        let sky = table.get_ref();
+        let strength = match &sky.strength {
+            Some(strength) => self.number("strength", strength, limits::STRENGTH)?,
+            None => 1.0,
+        };
+        let optional = |name, value: &Option<Spanned<Value>>| {
+            value
+                .as_ref()
+                .map(|value| self.radiance(name, value, strength))
+                .transpose()
+        };
+        let horizon = optional("horizon", &sky.horizon)?;
+        let zenith = optional("zenith", &sky.zenith)?;
+        let sun = match (&sky.sun_direction, &sky.sun_irradiance) {
+            (None, None) => None,
+            (Some(direction), irradiance) => {
+                let towards = self.vector("sun_direction", direction)?;
+                let Some(unit) = towards.as_dvec3().try_normalize() else {
+                    return Err(self
+                        .wrong(
+                            direction,
+                            "sun_direction is zero",
+                            "no direction",
+                            "give the direction towards the sun, for example [1, 2, 0.5]",
+                        )
+                        .into());
+                };
+                let sun = Sun {
+                    direction: unit.as_vec3(),
+                    size: match &sky.sun_size {
+                        Some(size) => self.number("sun_size", size, limits::SUN_SIZE)?,
+                        None => DEFAULT_SUN_SIZE,
+                    },
+                    irradiance: match irradiance {
+                        Some(irradiance) => {
+                            self.color("sun_irradiance", irradiance, limits::IRRADIANCE)?
+                        }
+                        None => Vec3::splat(std::f32::consts::PI),
+                    },
+                };
+                if !limits::RADIANCE.holds_all(sun.radiance().unwrap_or_default()) {
+                    return Err(self
+                        .wrong(
+                            direction,
+                            "the sun is too bright for its size",
+                            "sun_irradiance over the solid angle of its disc is its radiance",
+                            format!(
+                                "radiance is at most {:e}: make sun_size larger, or 0 for a sun without a disc",
+                                limits::MAX_RADIANCE
+                            ),
+                        )
+                        .into());
+                }
+                Some(sun)
+            }
+            (None, Some(irradiance)) => {
+                return Err(self
+                    .wrong(
+                        irradiance,
+                        "the sun has no direction",
+                        "a sun without sun_direction",
+                        "add sun_direction, the direction towards the sun",
+                    )
+                    .into());
+            }
+        };
+        let image = sky
+            .image
+            .as_ref()
+            .map(|file| -> Result<_> {
+                let path = self.beside(self.text("image", file)?);
+                environment::load(&path, strength).map_err(|error| match error {
+                    Error::Scene(inner) => self
+                        .wrong(file, inner.to_string(), "named here", inner.help)
+                        .into(),
+                    other => other,
+                })
+            })
+            .transpose()?;
+        // One of the two is a sky of one colour; none of them is dark.
+        let one = horizon.or(zenith).unwrap_or(Vec3::ZERO);
+        Ok(Surroundings {
+            horizon: horizon.unwrap_or(one),
+            zenith: zenith.unwrap_or(one),
+            sun,
+            image,
+        })
+    }
+}
+
+/// The angle across the sun as it is seen from the Earth, in degrees.
+const DEFAULT_SUN_SIZE: f32 = 0.53;

@@ -1,0 +1,85 @@
+//! [`Settings`]: what is fixed before the work on an image begins.
+
+use std::ops::ControlFlow;
+use std::time::Duration;
+
+use spherule_kernel::{Effects, Rung, Shading};
+
+use crate::accel::Acceleration;
+
+/// What is fixed before the kernel is compiled, on the GPU and on the CPU.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Settings {
+    /// What the image shows of a hit.
+    pub shading: Shading,
+    /// How rays are intersected with spheres.
+    pub rung: Rung,
+    /// Whether spheres stand in a tree.
+    pub acceleration: Acceleration,
+    /// Which effects the pipeline holds; only [`Shading::Lit`] shows any.
+    pub effects: EffectChoice,
+    /// Stops after this time of tracing, give or take a launch on a GPU.
+    pub time_limit: Option<Duration>,
+    /// Stops taking samples when [`Reached::noise`](paths::Reached::noise) is as low as this.
+    pub noise: Option<f64>,
+}
+
+impl From<Shading> for Settings {
+    fn from(shading: Shading) -> Self {
+        Self {
+            shading,
+            ..Self::default()
+        }
+    }
+}
+
+impl From<(Shading, Rung)> for Settings {
+    fn from((shading, rung): (Shading, Rung)) -> Self {
+        Self {
+            shading,
+            rung,
+            ..Self::default()
+        }
+    }
+}
+
+/// Which effects the pipeline is compiled for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum EffectChoice {
+    /// Those that the scene calls for.
+    #[default]
+    Auto,
+    /// Every effect there is; those that the scene does not call for stay idle.
+    All,
+    /// Those of this set that the scene calls for; the others are left out of the image.
+    Only(Effects),
+}
+
+impl EffectChoice {
+    /// Of the effects that a scene calls for, those that its image shows.
+    #[must_use]
+    pub fn shown(self, called: Effects) -> Effects {
+        match self {
+            Self::Auto | Self::All => called,
+            Self::Only(effects) => called.within(effects),
+        }
+    }
+
+    /// The effects that the pipeline is compiled for.
+    #[must_use]
+    pub fn compiled(self, called: Effects) -> Effects {
+        match self {
+            Self::All => Effects::ALL,
+            Self::Auto | Self::Only(_) => self.shown(called),
+        }
+    }
+}
+
+/// Told how far a render is, a number from 0 to 1, and asked whether it goes on.
+///
+/// It is called from any thread, every few milliseconds of each on a CPU and after each launch on a GPU, and so must be quick. Where it
+/// breaks off, the render ends with what it has: see [`Rendered::is_complete`].
+pub type Progress<'a> = &'a (dyn Fn(f64) -> ControlFlow<()> + Sync);
+
+/// Ignores progress, and always goes on.
+pub const QUIET: Progress<'static> = &|_| ControlFlow::Continue(());

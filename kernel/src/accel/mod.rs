@@ -1,0 +1,18 @@
+//! Which spheres a ray is asked about: all of them, or those of the boxes that it meets. Runs on the GPU and on the CPU.
+//!
+//! | module | holds |
+//! | --- | --- |
+//! | [`brute`] | every sphere, one after the other |
+//! | `tiles` | every sphere by workgroups, which share what their pixels do not need to know each; on a GPU only |
+//! | [`node`] | [`Node`](node::Node) and [`Tree`](node::Tree): boxes around the spheres |
+//! | [`slabs`] | which boxes of a node a ray may meet |
+//! | [`walk`] | a ray's way through a tree |
+//! | [`traversal`] | [`Traversal`](traversal::Traversal): what finds the hits of light paths |
+
+pub mod brute;
+pub mod node;
+pub mod slabs;
+#[cfg(all(feature = "entry-points", target_arch = "spirv"))]
+pub mod tiles;
+pub mod traversal;
+pub mod walk;

@@ -1,0 +1,201 @@
+//! [`Sky`]: the light that comes from where there is nothing. Runs on the GPU and on the CPU.
+
+use core::f32::consts::{PI, TAU};
+
+use bytemuck::{Pod, Zeroable};
+use glam::{UVec2, Vec2, Vec3};
+// On the CPU, std has these functions.
+#[cfg(target_arch = "spirv")]
+use spirv_std::num_traits::Float as _;
+
+use crate::arithmetic::elements::read;
+use crate::effects::Effects;
+use crate::material::microfacet::ALBEDO_LEN;
+
+/// The sky: a colour, or a gradient from the horizon to the zenith (+y), or an image of the
+/// surroundings; and a sun.
+///
+/// An image is an equirectangular map of `environment_size` texels: its columns go once around,
+/// with −z in the middle and +x right of it, its rows from the zenith to the nadir. Radiance is
+/// constant in a texel. It lies in the kernel's tables, after [`ALBEDO_LEN`] floats: the cumulative
+/// probability of each row, that of each texel in its row, and the texels' three channels.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Sky {
+    /// The radiance at the horizon and below, or of the whole sky if it has no gradient.
+    pub horizon: Vec3,
+    /// The probability that the environment is the light that is looked for.
+    pub environment_probability: f32,
+    /// The radiance at the zenith.
+    pub zenith: Vec3,
+    /// The probability that the sun is the light that is looked for.
+    pub sun_probability: f32,
+    /// The unit vector towards the sun.
+    pub sun_direction: Vec3,
+    /// One minus the cosine of the angle between the sun's middle and its edge.
+    pub sun_height: f32,
+    /// The sun's radiance.
+    pub sun_radiance: Vec3,
+    /// Nothing; it keeps what follows where the GPU's layout has it.
+    pub padding: u32,
+    /// Width and height of the image of the surroundings, in texels.
+    pub environment_size: UVec2,
+    /// Nothing; it keeps what follows where the GPU's layout has it.
+    pub padding_end: UVec2,
+}
+
+impl Sky {
+    /// The radiance from `direction`, a unit vector, without the sun.
+    #[inline]
+    #[must_use]
+    pub fn radiance(&self, effects: Effects, direction: Vec3, tables: &[f32]) -> Vec3 {
+        if effects.any(Effects::ENVIRONMENT) {
+            self.texel(self.texel_at(direction), tables)
+        } else if effects.any(Effects::SKY_GRADIENT) {
+            let t = (0.5 * (direction.y + 1.0)).clamp(0.0, 1.0);
+            self.horizon + (self.zenith - self.horizon) * t
+        } else {
+            self.horizon
+        }
+    }
+
+    /// Whether `direction`, a unit vector, points into the disc of the sun.
+    #[inline]
+    #[must_use]
+    pub fn is_sun(&self, direction: Vec3) -> bool {
+        // 1 − cos without cancellation: half of the squared distance of unit vectors.
+        let apart = direction - self.sun_direction;
+        0.5 * apart.dot(apart) < self.sun_height
+    }
+
+    fn texel_at(&self, direction: Vec3) -> UVec2 {
+        let size = self.environment_size;
+        let u = 0.5 + direction.x.atan2(-direction.z) / TAU;
+        let v = direction.y.clamp(-1.0, 1.0).acos() / PI;
+        UVec2::new(
+            ((u * size.x as f32) as u32).min(size.x.max(1) - 1),
+            ((v * size.y as f32) as u32).min(size.y.max(1) - 1),
+        )
+    }
+
+    #[inline]
+    fn row_table(&self) -> usize {
+        ALBEDO_LEN
+    }
+
+    #[inline]
+    fn column_table(&self) -> usize {
+        ALBEDO_LEN + self.environment_size.y as usize
+    }
+
+    /// Where a row's columns are, or with the number of rows what follows them. Sizes that no table has wrap, here and below,
+    /// and what is beyond the tables is not read.
+    #[inline]
+    fn columns_of(&self, row: u32) -> usize {
+        let before = (row as usize).wrapping_mul(self.environment_size.x as usize);
+        self.column_table().wrapping_add(before)
+    }
+
+    #[inline]
+    fn texel(&self, texel: UVec2, tables: &[f32]) -> Vec3 {
+        let size = self.environment_size;
+        let row = (texel.y as usize).wrapping_mul(size.x as usize);
+        let channel = row.wrapping_add(texel.x as usize).wrapping_mul(3);
+        let at = self.columns_of(size.y).wrapping_add(channel);
+        if tables.len() > 2 && at < tables.len() - 2 {
+            Vec3::new(tables[at], tables[at + 1], tables[at + 2])
+        } else {
+            Vec3::ZERO
+        }
+    }
+
+    /// The density with which [`Sky::sample_environment`] chooses a direction in the texel.
+    #[inline]
+    fn density_in(&self, texel: UVec2, tables: &[f32]) -> f32 {
+        let size = self.environment_size;
+        let row = share(tables, self.row_table(), texel.y);
+        let column = share(tables, self.columns_of(texel.y), texel.x);
+        // The solid angle of the texel.
+        let angle = |row: f32| (PI * row / size.y as f32).cos();
+        let y = texel.y as f32;
+        let solid = (angle(y) - angle(y + 1.0)) * TAU / size.x as f32;
+        row * column / solid
+    }
+
+    /// The density with which [`Sky::sample_environment`] chooses `direction`.
+    #[inline]
+    #[must_use]
+    pub fn environment_density(&self, direction: Vec3, tables: &[f32]) -> f32 {
+        self.density_in(self.texel_at(direction), tables)
+    }
+
+    /// A direction, the brighter the likelier, with its density and its radiance.
+    #[inline]
+    #[must_use]
+    pub fn sample_environment(&self, u: Vec2, tables: &[f32]) -> (Vec3, f32, Vec3) {
+        let size = self.environment_size;
+        let (row, v) = find(tables, self.row_table(), size.y, u.y);
+        let (column, h) = find(tables, self.columns_of(row), size.x, u.x);
+        let texel = UVec2::new(column, row);
+        // Uniform in the solid angle of the texel.
+        let angle = |row: f32| (PI * row / size.y as f32).cos();
+        let above = angle(row as f32);
+        let y = above + (angle(row as f32 + 1.0) - above) * v;
+        let around = TAU * ((column as f32 + h) / size.x as f32 - 0.5);
+        let r = (1.0 - y * y).max(0.0).sqrt();
+        let direction = Vec3::new(r * around.sin(), y, -r * around.cos());
+        (
+            direction,
+            self.density_in(texel, tables),
+            self.texel(texel, tables),
+        )
+    }
+}
+
+/// The probability of entry `index` of a table of cumulative probabilities.
+#[inline]
+fn share(tables: &[f32], first: usize, index: u32) -> f32 {
+    let at = first.wrapping_add(index as usize);
+    if at >= tables.len() {
+        return 0.0;
+    }
+    let below = if (index > 0) & (at > 0) {
+        tables[at - 1]
+    } else {
+        0.0
+    };
+    tables[at] - below
+}
+
+/// The first of `count` entries whose cumulative probability exceeds `u`, and where in it `u` is.
+#[inline]
+fn find(tables: &[f32], first: usize, count: u32, u: f32) -> (u32, f32) {
+    let len = tables.len();
+    if (count == 0) | (first > len) || (count as usize > len - first) {
+        return (0, 0.0);
+    }
+    let mut low = 0;
+    let mut high = count - 1;
+    while low < high {
+        let middle = low + (high - low) / 2;
+        if u < read(tables, first + middle as usize) {
+            high = middle;
+        } else {
+            low = middle + 1;
+        }
+    }
+    let below = if low > 0 {
+        tables[first + low as usize - 1]
+    } else {
+        0.0
+    };
+    let width = tables[first + low as usize] - below;
+    let within = if width > 0.0 {
+        (u - below) / width
+    } else {
+        0.5
+    };
+    (low, within.clamp(0.0, 1.0))
+}
+
+const _: () = assert!(size_of::<Sky>() == 80);

@@ -1,0 +1,341 @@
+//! Rough metal: a surface of tiny mirrors. Runs on the GPU and on the CPU.
+//!
+//! The mirrors' normals follow the GGX distribution and shadow each other as E. Heitz derives for
+//! Smith's model (Understanding the Masking-Shadowing Function in Microfacet-Based BRDFs, J.
+//! Comput. Graph. Tech. 3 (2014)). Normals are sampled as they are seen, by spherical caps
+//! (J. Dupuy and A. Benyoub, Sampling Visible GGX Normals with Spherical Caps, HPG 2023).
+//!
+//! Light that meets two mirrors or more is not lost: C. Kulla and A. Conty's diffuse-like term
+//! (Revisiting Physically Based Shading at Imageworks, SIGGRAPH 2017) returns what the first
+//! bounce leaves, so that a white metal reflects all light, and the function stays reciprocal.
+//! It rests on a table of the share E that the first bounce returns, made by [`Albedo`].
+//!
+//! Directions are in the frame of the surface: z is the normal's, and both directions leave.
+
+use core::f32::consts::{FRAC_1_PI, PI, TAU};
+
+use glam::{Vec2, Vec3};
+// On the CPU, std has these functions.
+#[cfg(target_arch = "spirv")]
+use spirv_std::num_traits::Float as _;
+
+use crate::arithmetic::elements::read;
+use crate::path::sampling::{cosine_density, uniform_sphere};
+use crate::surface::unit;
+
+/// Below this α a metal is a mirror: the distribution's peak would leave the range of floats.
+pub const SMOOTHEST: f32 = 1e-3;
+
+/// Entries along each side of the table of E.
+pub const ALBEDO_SIDE: usize = 32;
+/// Floats in the table: E at (cos θ, α), row by row of one α, and then the mean of E for each α.
+pub const ALBEDO_LEN: usize = ALBEDO_SIDE * ALBEDO_SIDE + ALBEDO_SIDE;
+
+/// Schlick's approximation of the reflectance of a metal whose colour seen straight on is `color`.
+#[inline]
+#[must_use]
+pub fn schlick(color: Vec3, cosine: f32) -> Vec3 {
+    let m = (1.0 - cosine).clamp(0.0, 1.0);
+    let m2 = m * m;
+    color + (Vec3::ONE - color) * (m2 * m2 * m)
+}
+
+/// The distribution of normals, per solid angle of them and unit of surface.
+#[inline]
+fn distribution(normal: Vec3, alpha: f32) -> f32 {
+    // cos²(α² − 1) + 1 without cancellation.
+    let sine2 = normal.x * normal.x + normal.y * normal.y;
+    let across = normal.z * alpha;
+    let denominator = sine2 + across * across;
+    alpha * alpha / (PI * denominator * denominator)
+}
+
+/// Smith's Λ: how much of the surface hides itself towards a direction.
+#[inline]
+fn hidden(z: f32, alpha: f32) -> f32 {
+    let z2 = z * z;
+    let tangent2 = (1.0 - z2).max(0.0) / z2;
+    0.5 * ((1.0 + alpha * alpha * tangent2).sqrt() - 1.0)
+}
+
+/// Reflected light of one bounce, over the metal's own reflectance: D G / (4 cos cos) times the
+/// cosine of `to`, and the density of sampling `to` by [`sample_visible`].
+#[inline]
+fn single_bounce(from: Vec3, to: Vec3, alpha: f32) -> (f32, f32) {
+    let half = unit(from + to);
+    let d = distribution(half, alpha);
+    let (hidden_from, hidden_to) = (hidden(from.z, alpha), hidden(to.z, alpha));
+    let value = d / (4.0 * from.z * (1.0 + hidden_from + hidden_to));
+    let density = d / (4.0 * from.z * (1.0 + hidden_from));
+    (value, density)
+}
+
+/// A normal among those that `from` sees.
+#[inline]
+#[must_use]
+pub fn sample_visible(from: Vec3, alpha: f32, u: Vec2) -> Vec3 {
+    let stretched = unit(Vec3::new(from.x * alpha, from.y * alpha, from.z));
+    let z = (1.0 - u.y) * (1.0 + stretched.z) - stretched.z;
+    let sine = (1.0 - z * z).clamp(0.0, 1.0).sqrt();
+    let angle = TAU * u.x;
+    let half = Vec3::new(sine * angle.cos(), sine * angle.sin(), z) + stretched;
+    unit(Vec3::new(half.x * alpha, half.y * alpha, half.z.max(0.0)))
+}
+
+/// A rough metal seen from a direction.
+#[derive(Clone, Copy, Debug)]
+pub struct RoughMetal {
+    color: Vec3,
+    alpha: f32,
+    from: Vec3,
+    /// E towards the viewer: also the chance of sampling the first bounce rather than the others.
+    albedo: f32,
+    mean: f32,
+}
+
+impl RoughMetal {
+    /// The metal of this colour and this α seen along `from`; `table` is what
+    /// [`Albedo::table`] makes.
+    #[inline]
+    #[must_use]
+    pub fn new(color: Vec3, alpha: f32, from: Vec3, table: &[f32]) -> Self {
+        // One that is smoother is left to the mirror, where there is one.
+        let alpha = alpha.max(SMOOTHEST);
+        Self {
+            color,
+            alpha,
+            from,
+            albedo: look_up(table, from.z, alpha),
+            mean: mean_albedo(table, alpha),
+        }
+    }
+
+    /// The reflected light times the cosine of `to`, and the density of [`RoughMetal::sample`].
+    #[inline]
+    #[must_use]
+    pub fn evaluate(&self, to: Vec3, table: &[f32]) -> (Vec3, f32) {
+        if (to.z <= 0.0) | (self.from.z <= 0.0) {
+            return (Vec3::ZERO, 0.0);
+        }
+        let half = unit(self.from + to);
+        let (value, density) = single_bounce(self.from, to, self.alpha);
+        let first = schlick(self.color, half.dot(to)) * value;
+        let left = (1.0 - self.albedo) * (1.0 - look_up(table, to.z, self.alpha));
+        let others = left / (1.0 - self.mean).max(1e-6) * FRAC_1_PI * to.z;
+        // The mean of Schlick's curve; what bounces n times is coloured n times.
+        let fresnel = (self.color * 20.0 + Vec3::ONE) * (1.0 / 21.0);
+        let tint = fresnel * fresnel * self.mean / (Vec3::ONE - fresnel * (1.0 - self.mean));
+        (
+            first + tint * others,
+            self.albedo * density + (1.0 - self.albedo) * cosine_density(to.z),
+        )
+    }
+
+    /// A direction, chosen by `u`; `choice` decides between the first bounce and the others. May be
+    /// below the surface, where [`RoughMetal::evaluate`] is zero.
+    #[inline]
+    #[must_use]
+    pub fn sample(&self, u: Vec2, choice: f32) -> Vec3 {
+        if choice < self.albedo {
+            let normal = sample_visible(self.from, self.alpha, u);
+            normal * (2.0 * self.from.dot(normal)) - self.from
+        } else {
+            unit(Vec3::Z + uniform_sphere(u))
+        }
+    }
+}
+
+/// E, between the entries of the table.
+#[inline]
+fn look_up(table: &[f32], cosine: f32, alpha: f32) -> f32 {
+    if table.len() < ALBEDO_LEN {
+        return 1.0;
+    }
+    let last = (ALBEDO_SIDE - 1) as f32;
+    let x = (cosine * last).clamp(0.0, last);
+    let y = (alpha * last).clamp(0.0, last);
+    let (x0, y0) = (
+        (x as usize).min(ALBEDO_SIDE - 2),
+        (y as usize).min(ALBEDO_SIDE - 2),
+    );
+    let (x1, y1) = (x - x0 as f32, y - y0 as f32);
+    let at = y0 * ALBEDO_SIDE + x0;
+    let (a, b) = (read(table, at), read(table, at + 1));
+    let (c, d) = (
+        read(table, at + ALBEDO_SIDE),
+        read(table, at + ALBEDO_SIDE + 1),
+    );
+    let low = a + (b - a) * x1;
+    low + (c + (d - c) * x1 - low) * y1
+}
+
+/// The mean of E over the cosine-weighted hemisphere.
+#[inline]
+fn mean_albedo(table: &[f32], alpha: f32) -> f32 {
+    if table.len() < ALBEDO_LEN {
+        return 1.0;
+    }
+    let last = (ALBEDO_SIDE - 1) as f32;
+    let y = (alpha * last).clamp(0.0, last);
+    let y0 = (y as usize).min(ALBEDO_SIDE - 2);
+    let at = ALBEDO_SIDE * ALBEDO_SIDE + y0;
+    let (a, b) = (read(table, at), read(table, at + 1));
+    a + (b - a) * (y - y0 as f32)
+}
+
+/// Making the table; for the host.
+#[cfg(not(target_arch = "spirv"))]
+mod albedo {
+    use glam::{Vec2, Vec3};
+
+    use super::{ALBEDO_LEN, ALBEDO_SIDE, hidden, sample_visible};
+
+    /// The share of light that the first bounce on a rough white metal returns.
+    #[derive(Clone, Copy, Debug)]
+    pub struct Albedo;
+
+    impl Albedo {
+        /// The table that [`super::RoughMetal`] looks into, [`ALBEDO_LEN`] long.
+        #[must_use]
+        pub fn table() -> [f32; ALBEDO_LEN] {
+            let mut table = [0.0; ALBEDO_LEN];
+            let at = |index: usize| index as f32 / (ALBEDO_SIDE - 1) as f32;
+            for row in 0..ALBEDO_SIDE {
+                for column in 0..ALBEDO_SIDE {
+                    table[row * ALBEDO_SIDE + column] = Self::of(at(column), at(row));
+                }
+                // ∫ 2 E(μ) μ dμ, exact for the straight lines between the entries.
+                let step = 1.0 / (ALBEDO_SIDE - 1) as f64;
+                let mean: f64 = (0..ALBEDO_SIDE - 1)
+                    .map(|column| {
+                        let (low, high) = (
+                            f64::from(table[row * ALBEDO_SIDE + column]),
+                            f64::from(table[row * ALBEDO_SIDE + column + 1]),
+                        );
+                        let x = column as f64 * step;
+                        2.0 * step * (low * (x / 2.0 + step / 6.0) + high * (x / 2.0 + step / 3.0))
+                    })
+                    .sum();
+                table[ALBEDO_SIDE * ALBEDO_SIDE + row] = mean as f32;
+            }
+            table
+        }
+
+        /// E for one direction and one α, as the mean of G₂/G₁ over a grid of visible normals.
+        #[must_use]
+        pub fn of(cosine: f32, alpha: f32) -> f32 {
+            const SIDE: u16 = 48;
+            let z = cosine.clamp(1e-4, 1.0);
+            let alpha = alpha.max(super::SMOOTHEST);
+            let from = Vec3::new((1.0 - z * z).sqrt(), 0.0, z);
+            let mut sum = 0.0;
+            for i in 0..SIDE {
+                for j in 0..SIDE {
+                    let middle = |k: u16| (f32::from(k) + 0.5) / f32::from(SIDE);
+                    let normal = sample_visible(from, alpha, Vec2::new(middle(i), middle(j)));
+                    let to = normal * (2.0 * from.dot(normal)) - from;
+                    if to.z > 0.0 {
+                        let (a, b) = (hidden(from.z, alpha), hidden(to.z, alpha));
+                        sum += f64::from((1.0 + a) / (1.0 + a + b));
+                    }
+                }
+            }
+            (sum / f64::from(SIDE).powi(2)) as f32
+        }
+    }
+}
+
+#[cfg(not(target_arch = "spirv"))]
+pub use albedo::Albedo;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ALPHAS: [f32; 4] = [0.05, 0.2, 0.5, 1.0];
+
+    fn direction(cosine: f32, angle: f32) -> Vec3 {
+        let sine = (1.0 - cosine * cosine).sqrt();
+        Vec3::new(sine * angle.cos(), sine * angle.sin(), cosine)
+    }
+
+    /// The integral over the upper hemisphere, on a grid that is fine where a lobe may be.
+    fn integrate(f: impl Fn(Vec3) -> f64) -> f64 {
+        const ROWS: u32 = 600;
+        const COLUMNS: u32 = 600;
+        let mut sum = 0.0;
+        for row in 0..ROWS {
+            for column in 0..COLUMNS {
+                let cosine = (row as f32 + 0.5) / ROWS as f32;
+                let angle = TAU * (column as f32 + 0.5) / COLUMNS as f32;
+                sum += f(direction(cosine, angle));
+            }
+        }
+        sum * f64::from(TAU) / f64::from(ROWS * COLUMNS)
+    }
+
+    /// Light takes the same way back: f(a, b) = f(b, a).
+    #[test]
+    fn rough_metal_is_reciprocal() {
+        let table = Albedo::table();
+        let color = Vec3::new(0.9, 0.5, 0.2);
+        for alpha in ALPHAS {
+            for (a, b) in [(0.9, 0.3), (0.5, 0.6), (0.1, 0.95)] {
+                let (a, b) = (direction(a, 0.3), direction(b, 2.0));
+                let there = RoughMetal::new(color, alpha, a, &table)
+                    .evaluate(b, &table)
+                    .0
+                    / b.z;
+                let back = RoughMetal::new(color, alpha, b, &table)
+                    .evaluate(a, &table)
+                    .0
+                    / a.z;
+                let size = there.max_element().max(1e-6);
+                assert!(
+                    (there - back).abs().max_element() < 1e-4 * size,
+                    "{there} {back}"
+                );
+            }
+        }
+    }
+
+    /// The density integrates to the share of samples that leave upwards; the rest went below.
+    #[test]
+    fn the_density_is_that_of_the_samples() {
+        let table = Albedo::table();
+        for alpha in &ALPHAS[1..] {
+            for cosine in [0.95, 0.4] {
+                let metal = RoughMetal::new(Vec3::ONE, *alpha, direction(cosine, 0.0), &table);
+                let integral = integrate(|to| f64::from(metal.evaluate(to, &table).1));
+                let mut above = 0;
+                const COUNT: u32 = 20_000;
+                for sample in 0..COUNT {
+                    let sampler = crate::path::random::Sampler::new(5, glam::UVec2::ZERO, sample);
+                    let to = metal.sample(sampler.pair(0), sampler.single(1));
+                    above += u32::from(to.z > 0.0);
+                }
+                let share = f64::from(above) / f64::from(COUNT);
+                assert!(
+                    (integral - share).abs() < 0.01,
+                    "{alpha} {cosine}: {integral} {share}"
+                );
+            }
+        }
+    }
+
+    /// White metal reflects all light, by quadrature.
+    #[test]
+    fn white_metal_loses_nothing() {
+        let table = Albedo::table();
+        for alpha in &ALPHAS[1..] {
+            for cosine in [0.95, 0.6, 0.3] {
+                let metal = RoughMetal::new(Vec3::ONE, *alpha, direction(cosine, 0.0), &table);
+                let reflected = integrate(|to| f64::from(metal.evaluate(to, &table).0.x));
+                assert!(
+                    (reflected - 1.0).abs() < 6e-3,
+                    "{alpha} {cosine}: {reflected}"
+                );
+            }
+        }
+    }
+}

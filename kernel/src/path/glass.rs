@@ -1,0 +1,50 @@
+//! A path at glass and in it. Runs on the GPU and on the CPU.
+
+use glam::Vec3;
+// On the CPU, std has these functions.
+#[cfg(target_arch = "spirv")]
+use spirv_std::num_traits::Float as _;
+
+use super::light_path::Path;
+use crate::material::Material;
+use crate::material::optics::{Incidence, reflect};
+use crate::surface::{Surface, unit};
+
+/// Reflects the path at glass or lets it through, by chance, as Fresnel's equations share it out.
+#[inline]
+pub(super) fn cross_glass(path: &mut Path, surface: &Surface, material: &Material, u: f32) {
+    let cosine = surface.normal.dot(path.direction);
+    let enters = cosine < 0.0;
+    let (normal, eta) = if enters {
+        (surface.normal, 1.0 / material.parameter)
+    } else {
+        (-surface.normal, material.parameter)
+    };
+    let incidence = Incidence {
+        cosine: cosine.abs().min(1.0),
+        eta,
+    };
+    let fresnel = incidence.fresnel();
+    let direction = if u < fresnel.reflectance {
+        reflect(path.direction, normal)
+    } else {
+        // Which side of the surface is the one that absorbs.
+        path.absorption = if enters == (material.kind == Material::GLASS) {
+            material.volume
+        } else {
+            Vec3::ZERO
+        };
+        fresnel.refract(incidence, path.direction, normal)
+    };
+    path.leave(surface, unit(direction), 0.0);
+}
+
+/// Beer's law.
+#[inline]
+pub(super) fn absorb(absorption: Vec3, distance: f32) -> Vec3 {
+    Vec3::new(
+        (-absorption.x * distance).exp(),
+        (-absorption.y * distance).exp(),
+        (-absorption.z * distance).exp(),
+    )
+}

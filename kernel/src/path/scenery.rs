@@ -1,0 +1,68 @@
+//! [`Scenery`]: what stays the same for all light paths of a launch. Runs on the GPU and on the CPU.
+
+use glam::Vec4;
+
+use crate::accel::brute::MovingSpheres;
+use crate::accel::traversal::Traversal;
+use crate::effects::Effects;
+use crate::film::PathLaunch;
+use crate::hit::Hit;
+use crate::light::Light;
+use crate::material::Material;
+use crate::ray::Ray;
+use crate::sphere::Sphere;
+
+/// What stays the same for all paths of a launch: how the pipeline was compiled, what it was told,
+/// and the world.
+#[derive(Clone, Copy, Debug)]
+pub struct Scenery<'a, T> {
+    /// The effects that the pipeline holds.
+    pub effects: Effects,
+    /// The rung, a value of [`Rung::to_u32`](crate::Rung::to_u32).
+    pub rung: u32,
+    /// What the launch was told.
+    pub launch: &'a PathLaunch,
+    /// What finds hits among the spheres, on this rung.
+    pub traversal: T,
+    /// The spheres.
+    pub spheres: &'a [Sphere],
+    /// How each sphere moves, in scene units per unit of time.
+    pub velocities: &'a [Vec4],
+    /// For each sphere, the index of its material.
+    pub material_ids: &'a [u32],
+    /// The materials.
+    pub materials: &'a [Material],
+    /// The lights that are looked for.
+    pub lights: &'a [Light],
+    /// The table of [`RoughMetal`](crate::material::microfacet::RoughMetal), and after it that of [`Sky`](crate::light::sky::Sky).
+    pub tables: &'a [f32],
+}
+
+impl<T: Traversal> Scenery<'_, T> {
+    /// The spheres where they are at `time`.
+    #[inline]
+    pub(super) fn spheres_at(&self, time: f32) -> MovingSpheres<'_> {
+        MovingSpheres {
+            spheres: self.spheres,
+            velocities: self.velocities,
+            time,
+            effects: self.effects,
+        }
+    }
+
+    /// The sphere with this index where it is at `time`.
+    #[inline]
+    pub(super) fn sphere(&self, index: usize, time: f32) -> Sphere {
+        self.spheres_at(time).read(index)
+    }
+
+    #[inline]
+    pub(super) fn nearest_hit(&self, ray: &Ray, time: f32) -> Hit {
+        self.traversal.nearest_hit(ray, &self.spheres_at(time))
+    }
+
+    #[inline]
+    pub(super) fn is_occluded(&self, ray: &Ray, time: f32) -> bool {
+        self.traversal.is_occluded(ray, &self.spheres_at(time))
+    }
+}
