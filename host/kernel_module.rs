@@ -2,6 +2,7 @@
 //! committed modules of `spherule-kernel`.
 
 use spherule_kernel::Rung;
+use spherule_kernel::precision::Needs;
 
 use crate::device::Module;
 use crate::error::Result;
@@ -46,9 +47,9 @@ fn embedded(name: &str, bytes: &[u8]) -> Result<Module> {
 ///
 /// As [`f32()`].
 pub fn for_rung(rung: Rung) -> Result<Module> {
-    let module = match rung {
-        Rung::Double => f64(),
-        _ => f32(),
+    let module = match rung.needs() {
+        Needs::Nothing | Needs::ErrorTerms => f32(),
+        Needs::DoubleFloats => f64(),
     };
     module?.specialise(Rung::SPEC_ID, rung.to_u32())
 }

@@ -5,9 +5,9 @@ mod common;
 use common::{gpus, skips};
 use glam::{UVec2, Vec3, Vec4};
 use spherule::device::{Access, Gpu};
-use spherule::kernel::shading::shade;
+use spherule::kernel::shading::{Seen, shade};
 use spherule::kernel::{
-    Camera, Hit, Launch, Material, Ray, Sphere, Surface, nearest_hit, probe::layout,
+    Camera, Hit, Launch, Material, Ray, Shading, Sphere, Surface, nearest_hit, probe::layout,
 };
 use spherule::kernel_module;
 use spherule::random::Random;
@@ -229,7 +229,7 @@ fn shading_agrees_in_every_mode() {
         .collect();
     for gpu in gpus() {
         let output = gpu
-            .zeroed::<Vec4>("colors", 4 * rays.len())
+            .zeroed::<Vec4>("colors", Shading::ALL.len() * rays.len())
             .expect("colors");
         let on_gpu = run(
             gpu,
@@ -247,16 +247,19 @@ fn shading_agrees_in_every_mode() {
             &output,
             rays.len(),
         );
-        for (index, colors) in on_gpu.chunks_exact(4).enumerate() {
+        for (index, colors) in on_gpu.chunks_exact(Shading::ALL.len()).enumerate() {
             let surface = Surface::at(&rays[index], parameters[index], spheres[index]);
             for (mode, color) in colors.iter().enumerate() {
-                let expected = shade(
-                    mode as u32,
-                    &rays[index],
-                    parameters[index],
-                    &surface,
-                    &materials[index],
-                );
+                let seen = Seen {
+                    ray: rays[index],
+                    hit: Hit {
+                        t: parameters[index],
+                        sphere: index as u32,
+                    },
+                    surface,
+                    material: materials[index],
+                };
+                let expected = shade(mode as u32, seen);
                 assert!(
                     color.truncate().distance(expected) <= 1e-4 * expected.length().max(1.0),
                     "mode {mode}: {color} {expected}"

@@ -3,7 +3,7 @@
 
     slots.py FOLDER [--mrays N] [--floor MICROSECONDS] [--gops N]
 
-FOLDER is what `spherule bench --export` writes. Follows `kernel/src/by_tiles.rs` tile by tile: what its workgroups list,
+FOLDER is what `spherule bench --export` writes. Follows `kernel/src/accel/tiles.rs` tile by tile: what its workgroups list,
 how many steps of four cones and how many rounds of the rung each warp goes through. Slots of each part are those of the
 machine code that NVIDIA's driver makes for an H100 (docs/performance.md). With the rate that `spherule bench` prints, in
 millions of rays a second, the time of a launch that does nothing, and the multiplications a second that `bench` measures, in

@@ -4,6 +4,7 @@ use std::time::Instant;
 
 use serde::Serialize;
 use spherule_kernel::accel::brute::nearest_hit_in;
+use spherule_kernel::precision::OnRung;
 use spherule_kernel::{Hit, Ray, Rung, Sphere};
 
 use crate::device::{Access, Device};
@@ -43,7 +44,7 @@ pub fn measure(device: &Device, rungs: &[Rung], samples: &[(Ray, Sphere)]) -> Re
             for round in 0..=ROUNDS {
                 for (index, rung) in rungs.iter().enumerate() {
                     let started = Instant::now();
-                    std::hint::black_box(trace(*rung, rays, spheres));
+                    std::hint::black_box(rung.with(Trace(rays, spheres)));
                     // The first round warms up.
                     if round > 0 {
                         seconds[index].push(started.elapsed().as_secs_f64());
@@ -97,18 +98,15 @@ pub fn measure(device: &Device, rungs: &[Rung], samples: &[(Ray, Sphere)]) -> Re
 }
 
 /// Each ray against every sphere, compiled for the rung.
-fn trace(rung: Rung, rays: &[Ray], spheres: &[Sphere]) -> u32 {
-    match rung {
-        Rung::Textbook => trace_on::<{ Rung::Textbook.to_u32() }>(rays, spheres),
-        Rung::Robust => trace_on::<{ Rung::Robust.to_u32() }>(rays, spheres),
-        Rung::Compensated => trace_on::<{ Rung::Compensated.to_u32() }>(rays, spheres),
-        Rung::Double => trace_on::<{ Rung::Double.to_u32() }>(rays, spheres),
-        Rung::Certified => trace_on::<{ Rung::Certified.to_u32() }>(rays, spheres),
-    }
-}
+struct Trace<'a>(&'a [Ray], &'a [Sphere]);
 
-fn trace_on<const RUNG: u32>(rays: &[Ray], spheres: &[Sphere]) -> u32 {
-    rays.iter().fold(0, |sum, ray| {
-        sum ^ nearest_hit_in(RUNG, ray, spheres, 0, u32::MAX).sphere
-    })
+impl OnRung for Trace<'_> {
+    type Output = u32;
+
+    fn run<const RUNG: u32>(self) -> u32 {
+        let Self(rays, spheres) = self;
+        rays.iter().fold(0, |sum, ray| {
+            sum ^ nearest_hit_in(RUNG, ray, spheres, 0, u32::MAX).sphere
+        })
+    }
 }

@@ -4,7 +4,7 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use clap::builder::{OsStringValueParser, TypedValueParser};
+use clap::builder::{OsStringValueParser, PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use spherule_kernel::{Effects, Rung, Shading};
 
@@ -67,11 +67,11 @@ pub(super) struct RenderArguments {
     pub(super) device: DeviceChoice,
 
     /// What the image shows of a hit
-    #[arg(long, value_enum, default_value = "lit")]
-    pub(super) shade: Shade,
+    #[arg(long, value_parser = shading(), default_value = "lit")]
+    pub(super) shade: Shading,
 
-    /// How a ray is intersected with a sphere; the dearer ways are right more often
-    #[arg(long, value_enum, default_value = "auto")]
+    /// How a ray is intersected with a sphere; the slower ways are right more often
+    #[arg(long, value_parser = precision(), default_value = "auto")]
     pub(super) precision: Precision,
 
     /// What auto precision may be off by, in pixels
@@ -185,7 +185,7 @@ pub(super) struct ExplainArguments {
     pub(super) device: DeviceChoice,
 
     /// How a ray is intersected with a sphere
-    #[arg(long, value_enum, default_value = "auto")]
+    #[arg(long, value_parser = precision(), default_value = "auto")]
     pub(super) precision: Precision,
 
     /// The image's size in pixels [default: the scene's, or smaller: see --time-limit]
@@ -231,8 +231,8 @@ pub(super) struct BenchArguments {
     pub(super) size: Size,
 
     /// How a ray is intersected with a sphere
-    #[arg(long, value_enum, default_value = "robust")]
-    pub(super) precision: BenchPrecision,
+    #[arg(long, value_parser = rung(), default_value = "robust")]
+    pub(super) precision: Rung,
 
     /// Whether spheres stand in a tree: auto where it pays, tree always, brute-force never
     #[arg(long, value_enum, default_value = "auto")]
@@ -263,32 +263,6 @@ pub(super) struct BenchArguments {
         conflicts_with = "json"
     )]
     pub(super) export: Option<PathBuf>,
-}
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub(super) enum BenchPrecision {
-    /// The quadratic formula in 32-bit floats
-    Textbook,
-    /// 32-bit floats, arranged so that small distant spheres keep their digits
-    Robust,
-    /// Pairs of 32-bit floats, about 48 bits, on any device
-    Compensated,
-    /// 64-bit floats, where the device has them
-    Double,
-    /// 32-bit floats with a bound on their error, and more digits only where that cannot decide
-    Certified,
-}
-
-impl From<BenchPrecision> for Rung {
-    fn from(precision: BenchPrecision) -> Self {
-        match precision {
-            BenchPrecision::Textbook => Self::Textbook,
-            BenchPrecision::Robust => Self::Robust,
-            BenchPrecision::Compensated => Self::Compensated,
-            BenchPrecision::Double => Self::Double,
-            BenchPrecision::Certified => Self::Certified,
-        }
-    }
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -339,57 +313,39 @@ fn subject(text: OsString) -> Result<Subject, String> {
     }
 }
 
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub(super) enum Shade {
-    /// Light: the scene's own, or else a lamp at the eye
-    Lit,
-    /// The surface normal n as the colour n · 0.5 + 0.5
-    Normals,
-    /// The distance from the eye: white is near, black is far (EXR: in scene units)
-    Depth,
-    /// Red where there is a hit
-    Flat,
+/// A mode of shading by its name.
+fn shading() -> impl TypedValueParser<Value = Shading> {
+    let names = Shading::ALL.map(|it| PossibleValue::new(it.name()).help(it.summary()));
+    PossibleValuesParser::new(names)
+        .map(|name| named(&Shading::ALL, Shading::name, &name).unwrap_or_default())
 }
 
-impl From<Shade> for Shading {
-    fn from(shade: Shade) -> Self {
-        match shade {
-            Shade::Lit => Self::Lit,
-            Shade::Normals => Self::Normals,
-            Shade::Depth => Self::Depth,
-            Shade::Flat => Self::Flat,
-        }
-    }
+/// A rung by its name, or `auto` for the one that the scene calls for.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Precision(pub(super) Option<Rung>);
+
+fn precision() -> impl TypedValueParser<Value = Precision> {
+    let auto = PossibleValue::new("auto")
+        .help("The cheapest whose bound keeps this scene within the tolerance");
+    let names = std::iter::once(auto).chain(rungs());
+    PossibleValuesParser::new(names).map(|name| Precision(named(&Rung::ALL, Rung::name, &name)))
 }
 
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub(super) enum Precision {
-    /// The cheapest whose bound keeps this scene within the tolerance
-    Auto,
-    /// The quadratic formula in 32-bit floats
-    Textbook,
-    /// 32-bit floats, arranged so that small distant spheres keep their digits
-    Robust,
-    /// Pairs of 32-bit floats, about 48 bits, on any device
-    Compensated,
-    /// 64-bit floats, where the device has them
-    Double,
-    /// 32-bit floats with a bound on their error, and more digits only where that cannot decide
-    Certified,
+/// A rung by its name.
+fn rung() -> impl TypedValueParser<Value = Rung> {
+    PossibleValuesParser::new(rungs())
+        .map(|name| named(&Rung::ALL, Rung::name, &name).unwrap_or_default())
 }
 
-impl Precision {
-    /// The rung that was asked for by name.
-    pub(super) fn rung(self) -> Option<Rung> {
-        match self {
-            Self::Auto => None,
-            Self::Textbook => Some(Rung::Textbook),
-            Self::Robust => Some(Rung::Robust),
-            Self::Compensated => Some(Rung::Compensated),
-            Self::Double => Some(Rung::Double),
-            Self::Certified => Some(Rung::Certified),
-        }
-    }
+fn rungs() -> impl Iterator<Item = PossibleValue> {
+    Rung::ALL
+        .into_iter()
+        .map(|it| PossibleValue::new(it.name()).help(it.summary()))
+}
+
+/// The one of a list that has this name.
+fn named<T: Copy>(all: &[T], name_of: fn(T) -> &'static str, name: &str) -> Option<T> {
+    all.iter().copied().find(|it| name_of(*it) == name)
 }
 
 /// The end of "there is no …", where one of the names is like it.

@@ -37,7 +37,7 @@ pub(super) fn run(arguments: &BenchArguments) -> Result<ExitCode> {
     let size = arguments.size;
     let json = arguments.json.as_deref().map(Output::new).transpose()?;
     let plan = Plan {
-        rung: arguments.precision.into(),
+        rung: arguments.precision,
         acceleration: arguments.acceleration.into(),
         rounds: arguments.rounds as usize,
     };

@@ -23,7 +23,7 @@ pub(super) fn choose_rung(
     tolerance: f64,
     device: &Device,
 ) -> Chosen {
-    if let Some(rung) = asked_for.rung() {
+    if let Some(rung) = asked_for.0 {
         return Chosen {
             rung,
             why: "asked for".into(),

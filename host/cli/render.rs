@@ -115,7 +115,7 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<ExitCode> {
 
     let is_brief = || {
         let threads = rayon::current_num_threads();
-        estimate::is_brief(&scene, arguments.shade.into(), arguments.effects, threads)
+        estimate::is_brief(&scene, arguments.shade, arguments.effects, threads)
     };
     let (mut device, why) =
         if arguments.device == DeviceChoice::Auto && !arguments.check && is_brief() {
@@ -142,7 +142,7 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<ExitCode> {
         say(warning);
     }
     let settings = Settings {
-        shading: arguments.shade.into(),
+        shading: arguments.shade,
         rung,
         acceleration: Acceleration::Auto,
         effects: arguments.effects,

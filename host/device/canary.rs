@@ -7,6 +7,7 @@
 
 use serde::Serialize;
 use spherule_kernel::Rung;
+use spherule_kernel::precision::Needs;
 use spherule_kernel::probe::canary::{Operands, Outcome, WideOutcome, sing, sing_wide};
 
 use crate::device::{Access, Device, Gpu};
@@ -86,12 +87,10 @@ impl Canary {
     ///
     /// [`Error::RungRefused`], and the device's errors.
     pub fn require_on_gpu(gpu: &Gpu, rung: Rung) -> Result<()> {
-        match rung {
-            Rung::Textbook | Rung::Robust => Ok(()),
-            Rung::Compensated | Rung::Certified => {
-                Self::measure(gpu, false)?.require(rung, gpu.name())
-            }
-            Rung::Double => Self::measure(gpu, gpu.has_f64())?.require(rung, gpu.name()),
+        match rung.needs() {
+            Needs::Nothing => Ok(()),
+            Needs::ErrorTerms => Self::measure(gpu, false)?.require(rung, gpu.name()),
+            Needs::DoubleFloats => Self::measure(gpu, gpu.has_f64())?.require(rung, gpu.name()),
         }
     }
 
@@ -219,9 +218,9 @@ impl Canary {
                 share.exact, share.tried
             )
         };
-        match rung {
-            Rung::Textbook | Rung::Robust => None,
-            Rung::Compensated | Rung::Certified => {
+        match rung.needs() {
+            Needs::Nothing => None,
+            Needs::ErrorTerms => {
                 if !self.sums.is_whole() {
                     Some(broken("sums", self.sums))
                 } else if !self.products.is_whole() {
@@ -237,7 +236,7 @@ impl Canary {
                     None
                 }
             }
-            Rung::Double => match self.wide {
+            Needs::DoubleFloats => match self.wide {
                 None => Some("the device has no 64-bit floats".into()),
                 Some(share) if !share.is_whole() => Some(format!(
                     "64-bit results are right in {} of {} tries",

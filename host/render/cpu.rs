@@ -7,7 +7,9 @@ use std::borrow::Cow;
 
 use glam::UVec2;
 use rayon::prelude::*;
-use spherule_kernel::{Launch, Pixel, Rung, Shading};
+use spherule_kernel::precision::OnRung;
+use spherule_kernel::shading::OnShading;
+use spherule_kernel::{Launch, Pixel};
 
 use super::launch::{check_launch, check_pixels};
 use super::packet::{self, Frusta, Packet, SIDE};
@@ -82,49 +84,56 @@ pub fn render_to(
 ) -> Result<()> {
     check_launch(launch)?;
     check_pixels(launch, pixels.len())?;
-    const TEXTBOOK: u32 = Rung::Textbook.to_u32();
-    const ROBUST: u32 = Rung::Robust.to_u32();
-    const COMPENSATED: u32 = Rung::Compensated.to_u32();
-    const DOUBLE: u32 = Rung::Double.to_u32();
-    const CERTIFIED: u32 = Rung::Certified.to_u32();
-    let bands = match settings.rung {
-        Rung::Textbook => bands_on::<TEXTBOOK>,
-        Rung::Robust => bands_on::<ROBUST>,
-        Rung::Compensated => bands_on::<COMPENSATED>,
-        Rung::Double => bands_on::<DOUBLE>,
-        Rung::Certified => bands_on::<CERTIFIED>,
-    };
-    bands(launch, world, settings.shading, progress, pixels);
+    settings.rung.with(Render {
+        launch,
+        world,
+        shade: settings.shading.with(Shade),
+        progress,
+        pixels,
+    });
     Ok(())
 }
 
-fn bands_on<const RUNG: u32>(
-    launch: &Launch,
-    world: &Prepared<'_>,
-    shading: Shading,
-    progress: Progress<'_>,
-    pixels: &mut [Pixel],
-) {
-    const LIT: u32 = Shading::Lit.to_u32();
-    const NORMALS: u32 = Shading::Normals.to_u32();
-    const DEPTH: u32 = Shading::Depth.to_u32();
-    const FLAT: u32 = Shading::Flat.to_u32();
-    let bands = match shading {
-        Shading::Lit => bands::<LIT, RUNG>,
-        Shading::Normals => bands::<NORMALS, RUNG>,
-        Shading::Depth => bands::<DEPTH, RUNG>,
-        Shading::Flat => bands::<FLAT, RUNG>,
-    };
-    bands(launch, world, progress, pixels);
+/// Writes what a square has hit to the rows of an image.
+type ShadeSquare = fn(&mut [Pixel], (usize, usize), &Packet, &Launch, &World);
+
+/// [`shade`], compiled for each shading mode, as the GPU's pipeline is.
+struct Shade;
+
+impl OnShading for Shade {
+    type Output = ShadeSquare;
+
+    fn run<const SHADING: u32>(self) -> ShadeSquare {
+        shade::<SHADING>
+    }
 }
 
-/// Compiled once for each shading mode and rung, as the GPU's pipeline is.
-fn bands<const SHADING: u32, const RUNG: u32>(
-    launch: &Launch,
-    world: &Prepared<'_>,
-    progress: Progress<'_>,
-    pixels: &mut [Pixel],
-) {
+/// [`bands`], compiled for each rung, as the GPU's pipeline is.
+struct Render<'a> {
+    launch: &'a Launch,
+    world: &'a Prepared<'a>,
+    shade: ShadeSquare,
+    progress: Progress<'a>,
+    pixels: &'a mut [Pixel],
+}
+
+impl OnRung for Render<'_> {
+    type Output = ();
+
+    fn run<const RUNG: u32>(self) {
+        bands::<RUNG>(self);
+    }
+}
+
+/// Renders bands of rows, square by square.
+fn bands<const RUNG: u32>(render: Render<'_>) {
+    let Render {
+        launch,
+        world,
+        shade,
+        progress,
+        pixels,
+    } = render;
     let width = launch.tile_size.x as usize;
     let all = pixels.len();
     let Prepared { world, nodes } = world;
@@ -165,7 +174,7 @@ fn bands<const SHADING: u32, const RUNG: u32>(
                     nodes.tree(),
                     &world.spheres,
                 );
-                shade::<SHADING>(pixels, (width, left), &packet, launch, world);
+                shade(pixels, (width, left), &packet, launch, world);
             }
             goes_on((width - since) * rows);
         });

@@ -17,7 +17,7 @@ use spherule_kernel::accel::node::{Extent, Node, Tree};
 use spherule_kernel::cull::bounds::Aim;
 use spherule_kernel::cull::discriminant::Target;
 use spherule_kernel::lane::{Lane, Lane3};
-use spherule_kernel::precision::{double, intersect, robust};
+use spherule_kernel::precision::{self, double, intersect, robust};
 use spherule_kernel::{Camera, Hit, Launch, Ray, Rung, Sphere};
 
 use crate::cpu::InstructionSet;
@@ -388,7 +388,7 @@ impl Packet {
                         self.test_robust(simd, group, *sphere, index);
                     } else if RUNG == Rung::Double.to_u32() {
                         self.test_double(simd, group, *sphere, index);
-                    } else if RUNG != Rung::Textbook.to_u32() && self.has_bounds {
+                    } else if precision::is_lazy(RUNG) && self.has_bounds {
                         let open = self.test_bounds(simd, group, *sphere, index);
                         if open != 0 {
                             self.ask::<RUNG>(group, open, spheres);
@@ -741,6 +741,7 @@ fn children(node: &Node) -> u32 {
 #[cfg(test)]
 mod tests {
     use spherule_kernel::accel::brute::nearest_hit_in;
+    use spherule_kernel::precision::OnRung;
 
     use super::*;
     use crate::accel::build_still;
@@ -759,6 +760,16 @@ mod tests {
             first_of_tile: 1,
             sphere_count: u32::MAX,
             ..Launch::default()
+        }
+    }
+
+    struct Square<'a>(InstructionSet, &'a Launch, &'a [Sphere]);
+
+    impl OnRung for Square<'_> {
+        type Output = usize;
+
+        fn run<const RUNG: u32>(self) -> usize {
+            finds_what_each_ray_finds::<RUNG>(self.0, self.1, self.2)
         }
     }
 
@@ -813,13 +824,6 @@ mod tests {
             world(&mut |r| Sphere::new(Vec3::ONE, r.log_within(0.1, 20.0))),
             world(&mut |r| Sphere::new(Vec3::new(0.0, 0.0, -3e3) + r.vec3(-900.0, 900.0), 40.0)),
         ];
-        let rungs = [
-            finds_what_each_ray_finds::<{ Rung::Textbook.to_u32() }>,
-            finds_what_each_ray_finds::<{ Rung::Robust.to_u32() }>,
-            finds_what_each_ray_finds::<{ Rung::Compensated.to_u32() }>,
-            finds_what_each_ray_finds::<{ Rung::Double.to_u32() }>,
-            finds_what_each_ray_finds::<{ Rung::Certified.to_u32() }>,
-        ];
         for instructions in InstructionSet::ALL {
             if !instructions.is_there() {
                 let required = std::env::var(cpu::VARIABLE);
@@ -833,9 +837,9 @@ mod tests {
                     (Vec3::new(0.3, 0.1, 0.2), Vec3::NEG_Z),
                 ] {
                     let launch = launch(eye, target);
-                    let hits: usize = rungs
+                    let hits: usize = Rung::ALL
                         .iter()
-                        .map(|finds| finds(instructions, &launch, spheres))
+                        .map(|rung| rung.with(Square(instructions, &launch, spheres)))
                         .sum();
                     assert!(hits > 1000, "{instructions}: {hits} hits tell little");
                 }

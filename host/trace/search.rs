@@ -10,7 +10,7 @@ use spherule_kernel::accel::node::{Extent, Node, Tree};
 use spherule_kernel::cull::bounds::Line;
 use spherule_kernel::cull::discriminant::Target;
 use spherule_kernel::lane::Lane3;
-use spherule_kernel::precision::{Precision, Robust, intersect};
+use spherule_kernel::precision::{self, OnRung, Precision, Robust};
 use spherule_kernel::{Effects, Hit, Ray, Rung, Sphere};
 
 #[cfg(target_arch = "x86_64")]
@@ -35,18 +35,21 @@ pub(super) struct Query<'a> {
 
 impl<'a> Query<'a> {
     pub(super) fn new(rung: Rung, tree: Tree<'a>) -> Self {
-        fn on<const RUNG: u32>(sphere: Sphere, ray: &Ray) -> f32 {
-            intersect(RUNG, sphere, ray)
+        /// The rung's question, compiled for it.
+        struct Question;
+        impl OnRung for Question {
+            type Output = fn(Sphere, &Ray) -> f32;
+
+            fn run<const RUNG: u32>(self) -> Self::Output {
+                intersect::<RUNG>
+            }
+        }
+        fn intersect<const RUNG: u32>(sphere: Sphere, ray: &Ray) -> f32 {
+            precision::intersect(RUNG, sphere, ray)
         }
         Self {
             rung,
-            intersect: match rung {
-                Rung::Textbook => on::<{ Rung::Textbook.to_u32() }>,
-                Rung::Robust => on::<{ Rung::Robust.to_u32() }>,
-                Rung::Compensated => on::<{ Rung::Compensated.to_u32() }>,
-                Rung::Double => on::<{ Rung::Double.to_u32() }>,
-                Rung::Certified => on::<{ Rung::Certified.to_u32() }>,
-            },
+            intersect: rung.with(Question),
             tree,
             extent: Extent::of_node(tree.nodes().first().unwrap_or(&Node::default())),
         }
@@ -108,9 +111,9 @@ impl Search {
         let line = Line::of(ray);
         Self {
             intersect,
-            is_lazy: rung >= Rung::Compensated,
+            is_lazy: precision::is_lazy(rung.to_u32()),
             is_robust: rung == Rung::Robust,
-            is_bounded: rung >= Rung::Robust,
+            is_bounded: rung.is_bounded(),
             ray: Ray {
                 t_max: ray.end(),
                 ..*ray

@@ -8,6 +8,7 @@ use spherule_kernel::accel::node::{Extent, Node};
 use spherule_kernel::accel::slabs::Slabs;
 use spherule_kernel::cull::bounds::Line;
 use spherule_kernel::lane::{Lane as _, Lane3};
+use spherule_kernel::precision::OnRung;
 use spherule_kernel::precision::robust::Quadratic;
 use spherule_kernel::{Hit, Ray, Rung, Sphere};
 
@@ -122,18 +123,13 @@ impl Sixteen {
             self.t_min.0[i] = ray.t_min;
             self.end.0[i] = ray.t_max;
         }
-        match rung {
-            Rung::Textbook => self.ready::<{ Rung::Textbook.to_u32() }>(world),
-            Rung::Robust => self.ready::<{ Rung::Robust.to_u32() }>(world),
-            // Boxes need not be wider for the others.
-            _ => self.ready::<{ Rung::Certified.to_u32() }>(world),
-        }
+        rung.with(Ready(self, world));
         self.are_plain[..rays.len().min(LANES)]
             .iter()
             .all(|is| *is == 1)
     }
 
-    /// Loops over arrays become vector instructions.
+    /// Makes the rays ready for boxes and spheres. Loops over arrays become vector instructions.
     #[inline(never)]
     #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
     fn ready<const RUNG: u32>(&mut self, world: &Extent) {
@@ -166,6 +162,19 @@ impl Sixteen {
             self.slabs.near_rows[1].0[i] = rows.y;
             self.slabs.near_rows[2].0[i] = rows.z;
         }
+    }
+}
+
+/// [`Sixteen::ready`], compiled for each rung. Made only where the machine has the features.
+struct Ready<'a>(&'a mut Sixteen, &'a Extent);
+
+impl OnRung for Ready<'_> {
+    type Output = ();
+
+    fn run<const RUNG: u32>(self) {
+        let Self(sixteen, world) = self;
+        // SAFETY: as above.
+        unsafe { sixteen.ready::<RUNG>(world) }
     }
 }
 

@@ -13,7 +13,7 @@ use crate::film::{Launch, Pixel};
 use crate::hit::Hit;
 use crate::material::{Material, material_of};
 use crate::ray::Ray;
-use crate::shading::shade;
+use crate::shading::{Seen, shade};
 use crate::sphere::Sphere;
 use crate::surface::Surface;
 
@@ -114,9 +114,13 @@ impl Launch {
         if hit.is_some() {
             let index = hit.sphere as usize;
             let sphere = read(spheres, index);
-            let material = material_of(index, material_ids, materials);
-            let surface = Surface::at(ray, hit.t, sphere);
-            result = Pixel::new(shade(shading, ray, hit.t, &surface, &material), hit.t);
+            let seen = Seen {
+                ray: *ray,
+                hit,
+                surface: Surface::at(ray, hit.t, sphere),
+                material: material_of(index, material_ids, materials),
+            };
+            result = Pixel::new(shade(shading, seen), hit.t);
         }
         result
     }

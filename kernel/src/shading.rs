@@ -1,27 +1,96 @@
-//! [`Shading`]: from a hit to a colour. Runs on the GPU and on the CPU.
+//! [`Shading`]: what the image shows of a hit. Runs on the GPU and on the CPU.
 
 use glam::Vec3;
 
+use crate::hit::Hit;
 use crate::material::Material;
 use crate::ray::Ray;
 use crate::surface::{Surface, unit};
 
-/// What the image shows of a hit.
-///
-/// The mode is fixed before the pipeline is compiled: on the GPU it is a specialisation
-/// constant, on the CPU a constant that each loop is compiled for.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[repr(u32)]
-pub enum Shading {
+/// What the numbers of a pixel are, which decides how they are put into a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Quantity {
+    /// Linear light, with a background where nothing is hit.
+    Light,
+    /// A colour that stays as it is, with a background where nothing is hit.
+    Color,
+}
+
+/// A hit, as it is shown. Values, because naga takes no struct of pointers.
+#[derive(Clone, Copy, Debug)]
+pub struct Seen {
+    /// The ray.
+    pub ray: Ray,
+    /// What it found.
+    pub hit: Hit,
+    /// The surface there.
+    pub surface: Surface,
+    /// What it is made of.
+    pub material: Material,
+}
+
+/// Makes the enum, and what decides by it, of the list below.
+macro_rules! shadings {
+    ($($(#[$doc:meta])* $name:ident = $value:literal, $text:literal, $summary:literal, $quantity:ident, $show:ident;)*) => {
+        /// What the image shows of a hit.
+        ///
+        /// The mode is fixed before the pipeline is compiled: on the GPU it is a specialisation
+        /// constant, on the CPU a constant that each loop is compiled for.
+        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+        #[repr(u32)]
+        pub enum Shading {
+            $($(#[$doc])* $name = $value,)*
+        }
+
+        impl Shading {
+            /// Every mode.
+            pub const ALL: [Self; [$($value),*].len()] = [$(Self::$name),*];
+
+            /// The mode's name, as the command line takes it.
+            #[must_use]
+            pub const fn name(self) -> &'static str {
+                match self { $(Self::$name => $text,)* }
+            }
+
+            /// What it shows, in a few words.
+            #[must_use]
+            pub const fn summary(self) -> &'static str {
+                match self { $(Self::$name => $summary,)* }
+            }
+
+            /// What the numbers of its pixels are.
+            #[must_use]
+            pub const fn quantity(self) -> Quantity {
+                match self { $(Self::$name => Quantity::$quantity,)* }
+            }
+
+            /// Runs `of` compiled for this mode alone.
+            #[cfg(not(target_arch = "spirv"))]
+            pub fn with<F: OnShading>(self, of: F) -> F::Output {
+                match self { $(Self::$name => of.run::<$value>(),)* }
+            }
+        }
+
+        /// What a pixel holds of a hit in the mode `shading`, a value of [`Shading::to_u32`]; zeros for a value that is none.
+        #[inline]
+        #[must_use]
+        pub fn shade(shading: u32, seen: Seen) -> Vec3 {
+            $(if shading == $value { $show(seen) } else)* { Vec3::ZERO }
+        }
+    };
+}
+
+// Each mode: its number and name; what it shows; what its numbers are; and the function that makes them.
+shadings! {
     /// A lamp at the eye and Lambert's cosine law, with the colour of the sphere's material.
     #[default]
-    Lit = 0,
+    Lit = 0, "lit", "Light: the scene's own, or else a lamp at the eye", Light, lit;
     /// The outward unit normal n, as n · 0.5 + 0.5.
-    Normals = 1,
+    Normals = 1, "normals", "The surface normal n as the colour n · 0.5 + 0.5", Color, normal;
     /// The distance from the eye, in scene units, in all three channels.
-    Depth = 2,
+    Depth = 2, "depth", "The distance from the eye: white is near, black is far (EXR: in scene units)", Color, distance;
     /// Pure red.
-    Flat = 3,
+    Flat = 3, "flat", "Red where there is a hit", Color, red;
 }
 
 impl Shading {
@@ -34,33 +103,41 @@ impl Shading {
         self as u32
     }
 
-    /// Whether the colours are measurements rather than light: normals, depth and flat red go
-    /// into an image file as they are, with no transfer curve.
+    /// Whether the pixels are measurements rather than light: they go into an image file as they are, with no transfer curve.
     #[must_use]
     pub const fn is_data(self) -> bool {
-        !matches!(self, Self::Lit)
+        !matches!(self.quantity(), Quantity::Light)
     }
 }
 
-const LIT: u32 = Shading::Lit.to_u32();
-const NORMALS: u32 = Shading::Normals.to_u32();
-const DEPTH: u32 = Shading::Depth.to_u32();
+/// Something that is compiled for each mode: see [`Shading::with`].
+#[cfg(not(target_arch = "spirv"))]
+pub trait OnShading {
+    /// What comes of it.
+    type Output;
 
-/// The colour of a surface point seen along `ray` at parameter `t`, in the mode `shading`, a
-/// value of [`Shading::to_u32`].
+    /// Runs it for the mode with this value of [`Shading::to_u32`].
+    fn run<const SHADING: u32>(self) -> Self::Output;
+}
+
+/// Lambert with the light where the eye is. The absolute value lights the inside of a sphere that the eye is in.
 #[inline]
-#[must_use]
-pub fn shade(shading: u32, ray: &Ray, t: f32, surface: &Surface, material: &Material) -> Vec3 {
-    if shading == LIT {
-        // Lambert with the light where the eye is. The absolute value lights the inside of a
-        // sphere that the eye is in.
-        let cosine = surface.normal.dot(unit(ray.direction));
-        material.color * cosine.abs()
-    } else if shading == NORMALS {
-        surface.normal * 0.5 + Vec3::splat(0.5)
-    } else if shading == DEPTH {
-        Vec3::splat(t * ray.direction.length())
-    } else {
-        Vec3::X
-    }
+fn lit(seen: Seen) -> Vec3 {
+    let cosine = seen.surface.normal.dot(unit(seen.ray.direction));
+    seen.material.color * cosine.abs()
+}
+
+#[inline]
+fn normal(seen: Seen) -> Vec3 {
+    seen.surface.normal * 0.5 + Vec3::splat(0.5)
+}
+
+#[inline]
+fn distance(seen: Seen) -> Vec3 {
+    Vec3::splat(seen.hit.t * seen.ray.direction.length())
+}
+
+#[inline]
+fn red(_: Seen) -> Vec3 {
+    Vec3::X
 }

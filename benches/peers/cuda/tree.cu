@@ -1,5 +1,5 @@
 // spherule's walk through its tree of boxes in CUDA, for comparison: the same nodes, in the same order,
-// with the same bounds and the same formula for a sphere (kernel/src/tree.rs, kernel/src/precision/robust.rs).
+// with the same bounds and the same formula for a sphere (kernel/src/accel/walk.rs, kernel/src/precision/robust.rs).
 // What differs is the language and its compiler, and that spheres are asked about one at a time for the nearest: two,
 // as there, is slower here, and so is the formula without its branch.
 #include "scene.h"

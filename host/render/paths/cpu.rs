@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 use glam::UVec2;
 use rayon::prelude::*;
 use spherule_kernel::path::{Scenery, trace_pixel};
+use spherule_kernel::precision::OnRung;
 use spherule_kernel::{Accumulator, Effects, PathLaunch, Rung};
 
 use super::budget::{Budget, Reached, StoppedBy, noise};
@@ -58,7 +59,7 @@ type Trace = fn(
 pub fn render(prepared: &Prepared, settings: &Settings, progress: Progress<'_>) -> Result<Sampled> {
     check_path_launch(&prepared.launch)?;
     let begun = Instant::now();
-    let trace = trace_for(prepared.compiled, settings.rung);
+    let trace = settings.rung.with(TraceFor(prepared.compiled));
     let size = prepared.launch.image_size;
     let levels = Levels::of(prepared.nodes.tree());
     let mut accumulators = film::allocate::<Accumulator>(size.x, size.y)?;
@@ -141,24 +142,20 @@ pub fn render(prepared: &Prepared, settings: &Settings, progress: Progress<'_>) 
 }
 
 /// The loop that was compiled for the rung and for the fewest effects that hold these.
-fn trace_for(effects: Effects, rung: Rung) -> Trace {
-    match rung {
-        Rung::Textbook => trace_on::<{ Rung::Textbook.to_u32() }>(effects),
-        Rung::Robust => trace_on::<{ Rung::Robust.to_u32() }>(effects),
-        Rung::Compensated => trace_on::<{ Rung::Compensated.to_u32() }>(effects),
-        Rung::Double => trace_on::<{ Rung::Double.to_u32() }>(effects),
-        Rung::Certified => trace_on::<{ Rung::Certified.to_u32() }>(effects),
-    }
-}
+struct TraceFor(Effects);
 
-fn trace_on<const RUNG: u32>(effects: Effects) -> Trace {
-    let fits = |set: u32| effects.without(Effects::from_bits(set)).is_empty();
-    if fits(LOCAL) {
-        trace::<LOCAL, RUNG>
-    } else if fits(STILL) {
-        trace::<STILL, RUNG>
-    } else {
-        trace::<ALL, RUNG>
+impl OnRung for TraceFor {
+    type Output = Trace;
+
+    fn run<const RUNG: u32>(self) -> Trace {
+        let fits = |set: u32| self.0.without(Effects::from_bits(set)).is_empty();
+        if fits(LOCAL) {
+            trace::<LOCAL, RUNG>
+        } else if fits(STILL) {
+            trace::<STILL, RUNG>
+        } else {
+            trace::<ALL, RUNG>
+        }
     }
 }
 

@@ -8,14 +8,9 @@
 #[cfg(not(target_arch = "spirv"))]
 use alloc::vec;
 
+use crate::precision::widening;
 use bytemuck::{Pod, Zeroable};
 use glam::{UVec4, Vec3};
-// On the CPU, std has `f32::sqrt`.
-#[cfg(target_arch = "spirv")]
-use spirv_std::num_traits::Float as _;
-
-use crate::arithmetic::U;
-use crate::precision::Rung;
 
 /// Up to eight boxes, and what is in them: a node each, or one to four spheres.
 ///
@@ -147,18 +142,7 @@ impl Extent {
     #[must_use]
     pub fn widening(&self, rung: u32, origin: Vec3) -> f32 {
         let far = (self.low - origin).abs().max((self.high - origin).abs());
-        if rung == Rung::Robust.to_u32() {
-            // At least the distance to the farthest corner.
-            let distance = far.x + far.y + far.z;
-            distance * (32.0 * U)
-        } else if rung == Rung::Textbook.to_u32() {
-            let r = self.smallest_radius;
-            let squared = far.dot(far) * (24.0 * U);
-            // √(r² + e) − r, without cancellation.
-            squared / ((r * r + squared).sqrt() + r).max(f32::MIN_POSITIVE)
-        } else {
-            0.0
-        }
+        widening(rung, far, self.smallest_radius)
     }
 }
 

@@ -20,9 +20,8 @@ use super::slabs::{FIRST_OF_FOUR, Slabs, load};
 use crate::cull::bounds::Line;
 use crate::gpu::instructions::{highest_bit, lowest_bit};
 use crate::hit::Hit;
-use crate::precision::{Precision, Robust, Rung, Textbook, intersect};
+use crate::precision::{intersect, intersect_at_once, is_lazy};
 use crate::ray::Ray;
-use crate::sphere::Sphere;
 
 /// The nearest hit of `ray` on this rung among the spheres of a tree; of two equally near, the one
 /// of lower index.
@@ -83,16 +82,6 @@ fn sphere_at(links: UVec4, bit: u32, count: u32) -> u32 {
     within(links.y.wrapping_add(before), count)
 }
 
-/// [`intersect`] of the rungs that are not lazy.
-#[inline]
-fn intersect_at_once(rung: u32, sphere: Sphere, ray: &Ray) -> f32 {
-    if rung == Rung::Robust.to_u32() {
-        Robust::intersect(sphere, ray)
-    } else {
-        Textbook::intersect(sphere, ray)
-    }
-}
-
 /// The two lowest bits of some that are set, the same twice if there is one; and the others.
 #[inline]
 fn take_two(bits: u32) -> (u32, u32, u32) {
@@ -135,7 +124,7 @@ fn walk<const ANY: bool, S: Spheres + ?Sized>(
     let slabs = Slabs::of(rung, ray, &world);
     let line = Line::of(ray);
     // Rungs that take long are asked about the nearest sphere only, when it is found.
-    let is_lazy = rung >= Rung::Compensated.to_u32();
+    let is_lazy = is_lazy(rung);
     let ray = &Ray {
         t_max: ray.end(),
         ..*ray

@@ -24,9 +24,10 @@ use crate::probe::canary::{WideOutcome, sing_wide};
 use crate::probe::glass_walk::{Walk, walk_inside};
 use crate::probe::layout;
 use crate::probe::throughput::products;
-use crate::shading::shade;
+use crate::shading::{Seen, shade};
 use crate::{
-    Accumulator, Effects, Hit, Launch, Light, Material, PathLaunch, Pixel, Ray, Sphere, Surface,
+    Accumulator, Effects, Hit, Launch, Light, Material, PathLaunch, Pixel, Ray, Shading, Sphere,
+    Surface,
 };
 
 /// Renders one launch: a tile of the image against a run of the spheres.
@@ -307,8 +308,8 @@ pub fn make_camera_rays(
     }
 }
 
-/// Shades the hit at parameter i of ray i on sphere i in each of the four modes; writes four
-/// colours an element.
+/// Shades the hit at parameter i of ray i on sphere i in each mode; writes a colour for each
+/// of [`Shading::ALL`] an element.
 #[spirv(compute(threads(64), entry_point_name = "shade_hits"))]
 pub fn shade_hits(
     #[spirv(global_invocation_id)] id: UVec3,
@@ -318,21 +319,28 @@ pub fn shade_hits(
     #[spirv(storage_buffer, descriptor_set = 0, binding = 3)] materials: &[Material],
     #[spirv(storage_buffer, descriptor_set = 0, binding = 4)] colors: &mut [Vec4],
 ) {
+    const MODES: usize = Shading::ALL.len();
     let index = id.x as usize;
     if index < rays.len()
         && index < spheres.len()
         && index < parameters.len()
         && index < materials.len()
-        && 4 * index + 3 < colors.len()
+        && MODES * index + (MODES - 1) < colors.len()
     {
         let ray = &rays[index];
-        let t = parameters[index];
-        let surface = Surface::at(ray, t, spheres[index]);
-        let material = &materials[index];
+        let hit = Hit {
+            t: parameters[index],
+            sphere: id.x,
+        };
+        let seen = Seen {
+            ray: *ray,
+            hit,
+            surface: Surface::at(ray, hit.t, spheres[index]),
+            material: materials[index],
+        };
         let mut mode = 0;
-        while mode < 4 {
-            let color = shade(mode, ray, t, &surface, material);
-            colors[4 * index + mode as usize] = color.extend(1.0);
+        while mode < MODES {
+            colors[MODES * index + mode] = shade(mode as u32, seen).extend(1.0);
             mode += 1;
         }
     }

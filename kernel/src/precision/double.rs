@@ -5,7 +5,9 @@
 //! v (a r² + |k||o||d|), and c by a few v (o·o + r²). Each root is rounded to a float at the end.
 //! Vulkan promises little of 64-bit quotients and roots, so that one Newton step follows each.
 
-use super::root::{Precision, choose_root};
+use super::root::Precision;
+#[cfg(any(not(target_arch = "spirv"), feature = "f64"))]
+use super::root::choose_root;
 use crate::hit::Hit;
 use crate::lane::{Lane, Lane3};
 use crate::ray::Ray;
@@ -67,6 +69,7 @@ impl<L: Lane> Quadratic<L> {
 }
 
 impl Precision for Double {
+    #[cfg(any(not(target_arch = "spirv"), feature = "f64"))]
     #[inline]
     fn intersect(sphere: Sphere, ray: &Ray) -> f32 {
         let center = sphere.center();
@@ -86,6 +89,13 @@ impl Precision for Double {
         }
         let (near, far) = quadratic.roots();
         choose_root(near as f32, far as f32, ray)
+    }
+
+    /// The module has no 64-bit floats.
+    #[cfg(all(target_arch = "spirv", not(feature = "f64")))]
+    #[inline]
+    fn intersect(_: Sphere, _: &Ray) -> f32 {
+        Hit::NONE_T
     }
 }
 

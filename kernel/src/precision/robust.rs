@@ -11,7 +11,10 @@
 //! What is left is c itself: o·o − r² loses its digits where the origin is near the surface, and
 //! o = O − C is rounded. A huge ground sphere and a ray that starts on a surface need more.
 
+use glam::Vec3;
+
 use super::root::{Precision, choose_root};
+use crate::arithmetic::U;
 use crate::hit::Hit;
 use crate::lane::{Lane, Lane3};
 use crate::ray::Ray;
@@ -109,5 +112,12 @@ impl Precision for Robust {
         let t = choose_root(near, far, ray);
         // No branches: the threads of a GPU would wait for each other.
         if quadratic.meets() { t } else { Hit::NONE_T }
+    }
+
+    #[inline]
+    fn widening(far: Vec3, _: f32) -> f32 {
+        // At least the distance to the farthest corner.
+        let distance = far.x + far.y + far.z;
+        distance * (32.0 * U)
     }
 }

@@ -9,11 +9,13 @@
 //! discriminant cancels when the sphere is small and far, and −b cancels against the root when
 //! b² is much larger than 4ac.
 
+use glam::Vec3;
 // On the CPU, std has `f32::sqrt`.
 #[cfg(target_arch = "spirv")]
 use spirv_std::num_traits::Float as _;
 
 use super::root::{Precision, choose_root};
+use crate::arithmetic::U;
 use crate::hit::Hit;
 use crate::ray::Ray;
 use crate::sphere::Sphere;
@@ -36,5 +38,12 @@ impl Precision for Textbook {
         } else {
             Hit::NONE_T
         }
+    }
+
+    #[inline]
+    fn widening(far: Vec3, smallest_radius: f32) -> f32 {
+        let (r, squared) = (smallest_radius, far.dot(far) * (24.0 * U));
+        // √(r² + e) − r, without cancellation.
+        squared / ((r * r + squared).sqrt() + r).max(f32::MIN_POSITIVE)
     }
 }
