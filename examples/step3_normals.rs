@@ -23,11 +23,11 @@ fn main() -> spherule::Result<()> {
             let ray = camera.pixel_ray(UVec2::new(index % size.x, index / size.x), size);
             let t = sphere.intersect(&ray);
             if t == Hit::NONE_T {
-                return Pixel::new(Vec3::splat(0.8), t);
+                return Pixel::new(Vec3::ZERO, t);
             }
             let surface = Surface::at(&ray, t, sphere);
-            // A component between -1 and 1 becomes a channel between 0 and 1.
-            Pixel::new(surface.normal * 0.5 + 0.5, t)
+            // In the file a component between -1 and 1 becomes a channel between 0 and 1.
+            Pixel::new(surface.normal, t)
         })
         .collect();
     Image::new(size.x, size.y, Shading::Normals, pixels)?.save("step3.png")?;

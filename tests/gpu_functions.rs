@@ -258,6 +258,7 @@ fn shading_agrees_in_every_mode() {
                     },
                     surface,
                     material: materials[index],
+                    tag: index as u32,
                 };
                 let expected = shade(mode as u32, seen);
                 assert!(

@@ -7,11 +7,12 @@ mod common;
 use std::path::PathBuf;
 
 use common::{all_adapters, gpus, open, skips};
-use glam::Vec3;
+use glam::{UVec2, Vec3};
 use spherule::accel::Acceleration;
 use spherule::device::GpuOptions;
 use spherule::film::compare::{Comparison, Tolerance};
-use spherule::kernel::{Camera, Hit, Launch, Material, Pixel, Shading, Sphere};
+use spherule::kernel::shading::index_of;
+use spherule::kernel::{Camera, Hit, Launch, Material, Pixel, Shading, Sphere, nearest_hit};
 use spherule::render::pace::Pace;
 use spherule::render::{self, QUIET, Settings};
 use spherule::scene::{View, World};
@@ -474,4 +475,89 @@ fn all_paths(scene: &Scene, shading: Shading) -> Vec<Image> {
     let mut images = vec![on_cpu(scene, shading)];
     images.extend(on_gpus(scene, shading));
     images
+}
+
+/// An id is the sphere's place in the scene, whatever order the tree has put the spheres in.
+#[test]
+fn ids_are_those_of_the_scene() {
+    let mut scene = Scene::load("scenes/1crn.pdb").expect("crambin");
+    (scene.width, scene.height) = (80, 60);
+    let camera = scene
+        .view_or_framed()
+        .camera(scene.aspect())
+        .expect("a camera");
+    let size = UVec2::new(scene.width, scene.height);
+    for image in all_paths(&scene, Shading::Id) {
+        let mut hits = 0;
+        for (index, pixel) in image.pixels().iter().enumerate() {
+            let at = UVec2::new(index as u32 % size.x, index as u32 / size.x);
+            let ray = camera.pixel_ray(at, size);
+            let hit = nearest_hit(&ray, &scene.world.spheres);
+            if pixel.is_hit() && hit.is_some() {
+                assert_eq!(index_of(pixel.color()), hit.sphere, "{at}");
+                hits += 1;
+            }
+        }
+        assert!(hits > 1000, "{hits}");
+    }
+}
+
+/// Measurements are themselves in EXR files: signed normals, distances, indices; where nothing is hit
+/// they are zero, infinite, and no index, with no opacity.
+#[test]
+fn exr_files_hold_measurements() {
+    use exr::prelude::{FlatSamples, read_first_flat_layer_from_file};
+
+    let folder = tempfile::tempdir().expect("a folder");
+    let scene = two_spheres(80, 45);
+    for shading in [Shading::Normals, Shading::Depth, Shading::Id] {
+        let image = on_cpu(&scene, shading);
+        let path = folder.path().join(format!("{}.exr", shading.name()));
+        image.save(&path).expect("a file");
+        let file = read_first_flat_layer_from_file(&path).expect("an EXR file");
+        let channels = &file.layer_data.channel_data.list;
+        let names: Vec<String> = channels.iter().map(|it| it.name.to_string()).collect();
+        let floats = |name: &str| match &channels
+            [names.iter().position(|it| it == name).expect(name)]
+        .sample_data
+        {
+            FlatSamples::F32(values) => values.clone(),
+            other => panic!("{other:?}"),
+        };
+        let alpha = floats("A");
+        for (index, pixel) in image.pixels().iter().enumerate() {
+            assert_eq!(alpha[index], f32::from(u8::from(pixel.is_hit())));
+        }
+        let is_hit = |index: usize| image.pixels()[index].is_hit();
+        match shading {
+            Shading::Lit | Shading::Flat => unreachable!("they are no measurements"),
+            Shading::Normals => {
+                assert_eq!(names, ["A", "B", "G", "R"]);
+                let normals = ["R", "G", "B"].map(floats);
+                assert!(normals[1].iter().any(|y| *y < -0.5), "signed");
+                for index in 0..alpha.len() {
+                    let normal = Vec3::from_array([0, 1, 2].map(|axis| normals[axis][index]));
+                    let length = if is_hit(index) { 1.0 } else { 0.0 };
+                    assert!((normal.length() - length).abs() < 1e-6, "{normal}");
+                }
+            }
+            Shading::Depth => {
+                assert_eq!(names, ["A", "Z"]);
+                for (index, z) in floats("Z").into_iter().enumerate() {
+                    assert_eq!(z.is_infinite(), !is_hit(index));
+                    assert!(z > 1.0);
+                }
+            }
+            Shading::Id => {
+                assert_eq!(names, ["A", "id"]);
+                let FlatSamples::U32(ids) = &channels[1].sample_data else {
+                    panic!("whole numbers");
+                };
+                for (index, id) in ids.iter().enumerate() {
+                    assert_eq!(*id == Hit::NONE_SPHERE, !is_hit(index));
+                    assert!(*id < 2 || !is_hit(index));
+                }
+            }
+        }
+    }
 }

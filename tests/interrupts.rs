@@ -45,7 +45,7 @@ fn devices(test: &str) -> Vec<Device> {
 }
 
 fn opacities(rendered: &Rendered) -> (u64, u64) {
-    let alpha = rendered.image.alpha().expect("an alpha channel");
+    let alpha = common::opacities(&rendered.image);
     let opaque = alpha.iter().filter(|alpha| **alpha == 1.0).count();
     let clear = alpha.iter().filter(|alpha| **alpha == 0.0).count();
     assert_eq!(opaque + clear, alpha.len());
@@ -76,7 +76,7 @@ fn a_time_limit_cuts_a_sample() {
         let pixels = u64::from(scene.width) * u64::from(scene.height);
         assert!(rendered.traced > 0 && rendered.traced < pixels);
         // The preview shows the rest: nothing is black or missing.
-        assert!(rendered.image.alpha().is_none());
+        assert!(!rendered.image.has_alpha());
         let last = rendered.image.pixels().last().expect("pixels");
         assert!(last.is_written() && last.color().max_element() > 0.0);
     }
@@ -133,7 +133,7 @@ fn camera_rays_are_broken_off_and_what_is_there_is_right() {
             };
             let whole = render(&scene, settings, &device, QUIET).expect("an image");
             assert!(whole.is_complete());
-            assert!(whole.image.alpha().is_none());
+            assert!(!whole.image.has_alpha());
             let calls = if matches!(device, Device::Cpu) {
                 200
             } else {
@@ -149,7 +149,7 @@ fn camera_rays_are_broken_off_and_what_is_there_is_right() {
             let (opaque, clear) = opacities(&part);
             assert!(opaque > 0 && clear > 0, "{}", device.name());
             assert_eq!(part.traced, opaque);
-            let alpha = part.image.alpha().expect("an alpha channel");
+            let alpha = common::opacities(&part.image);
             for (index, alpha) in alpha.iter().enumerate() {
                 let pixel = part.image.pixels()[index];
                 if *alpha == 1.0 {
@@ -208,7 +208,7 @@ fn light_paths_are_broken_off_in_the_first_sample_and_later() {
         let (opaque, clear) = opacities(&part);
         assert!(opaque > 0 && clear > 0, "{}", device.name());
         assert_eq!(part.traced, opaque);
-        let alpha = part.image.alpha().expect("an alpha channel");
+        let alpha = common::opacities(&part.image);
         for (index, alpha) in alpha.iter().enumerate() {
             let pixel = part.image.pixels()[index];
             // One sample in a shadow is as dark as none.
@@ -228,7 +228,7 @@ fn light_paths_are_broken_off_in_the_first_sample_and_later() {
             let in_samples = part.rays / part.traced;
             assert!((u64::from(reached.samples)..16).contains(&in_samples));
             assert!((1..16).contains(&reached.samples), "{}", reached.samples);
-            assert!(part.image.alpha().is_none());
+            assert!(!part.image.has_alpha());
         }
         // Noise is that of the pixels as they are.
         assert!(reached.noise > 0.0);

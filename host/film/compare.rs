@@ -106,7 +106,7 @@ mod tests {
 
     fn image(colors: &[Vec3]) -> Image {
         let pixels = colors.iter().map(|c| Pixel::new(*c, 1.0)).collect();
-        Image::new(colors.len() as u32, 1, Shading::Normals, pixels).expect("an image")
+        Image::new(colors.len() as u32, 1, Shading::Flat, pixels).expect("an image")
     }
 
     #[test]

@@ -4,8 +4,9 @@ use std::sync::LazyLock;
 
 use glam::Vec3;
 use rayon::prelude::*;
+use spherule_kernel::Pixel;
 use spherule_kernel::color::luminance;
-use spherule_kernel::{Pixel, Shading};
+use spherule_kernel::shading::{Quantity, index_of};
 
 use super::Image;
 use crate::scene::surroundings::Tonemap;
@@ -13,10 +14,10 @@ use crate::scene::surroundings::Tonemap;
 impl Image {
     /// The image as 8-bit red, green, blue, row by row.
     ///
-    /// Light goes through the sRGB transfer curve (IEC 61966-2-1). Measurements do not: normals
-    /// and flat red are stored as they are, and depth as a grey that falls linearly from white
-    /// at the nearest distance to black at the farthest (see [`Image::depth_range`]). Misses
-    /// keep the background, through the curve for light.
+    /// Light goes through the sRGB transfer curve (IEC 61966-2-1). Measurements do not: a normal n is
+    /// n · 0.5 + 0.5, depth is a grey that falls linearly from white at the nearest distance to black
+    /// at the farthest (see [`Image::depth_range`]), each sphere's index has a colour of its own, and flat red is as it is. Where nothing is
+    /// hit, light and flat red have the background, through the curve; the others are black.
     #[must_use]
     pub fn to_rgb8(&self) -> Vec<u8> {
         let mut bytes = vec![0; self.pixels.len() * 3];
@@ -37,7 +38,7 @@ impl Image {
     /// unless it is a depth image that shows anything.
     #[must_use]
     pub fn depth_range(&self) -> Option<(f32, f32)> {
-        if self.shading != Shading::Depth {
+        if self.shading.quantity() != Quantity::Distance {
             return None;
         }
         self.pixels
@@ -54,7 +55,7 @@ impl Image {
 /// Encodes the pixels of one image, or of several with a common depth range.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Encoder {
-    shading: Shading,
+    quantity: Quantity,
     /// What light is multiplied by.
     exposure: f32,
     tonemap: Tonemap,
@@ -66,7 +67,7 @@ impl Encoder {
     pub(crate) fn of(image: &Image) -> Self {
         let (near, far) = image.depth_range().unwrap_or((0.0, 0.0));
         Self {
-            shading: image.shading,
+            quantity: image.shading.quantity(),
             exposure: image.develop.exposure.exp2(),
             tonemap: image.develop.tonemap,
             near,
@@ -136,12 +137,12 @@ impl Encoder {
     #[inline]
     fn encode_bytes(&self, curve: &Curve, pixel: &Pixel) -> [u8; 3] {
         let byte = |channel| curve.byte(channel);
-        match self.shading {
-            Shading::Lit => self.develop(pixel.color()).to_array().map(byte),
-            shading if pixel.is_hit() && shading.is_data() => {
+        match self.quantity {
+            Quantity::Light => self.develop(pixel.color()).to_array().map(byte),
+            Quantity::Color if !pixel.is_hit() => pixel.color().to_array().map(byte),
+            Quantity::Color | Quantity::Vector | Quantity::Distance | Quantity::Index => {
                 self.encode(pixel).map(|value| (value * 255.0 + 0.5) as u8)
             }
-            _ => pixel.color().to_array().map(byte),
         }
     }
 
@@ -162,24 +163,35 @@ impl Encoder {
 
     /// The pixel's channels, each between 0 and 1.
     pub(super) fn encode(&self, pixel: &Pixel) -> [f32; 3] {
-        let color = pixel.color().to_array();
-        match self.shading {
-            Shading::Depth if pixel.is_hit() => {
+        let color = pixel.color();
+        match self.quantity {
+            Quantity::Light => self.develop(color).to_array().map(srgb),
+            Quantity::Color if pixel.is_hit() => color.to_array().map(|it| it.clamp(0.0, 1.0)),
+            Quantity::Color => color.to_array().map(srgb),
+            Quantity::Vector | Quantity::Distance | Quantity::Index if !pixel.is_hit() => [0.0; 3],
+            Quantity::Vector => color.to_array().map(|it| (it * 0.5 + 0.5).clamp(0.0, 1.0)),
+            Quantity::Distance => {
                 let span = self.far - self.near;
                 let grey = if span > 0.0 {
-                    (self.far - color[0]) / span
+                    (self.far - color.x) / span
                 } else {
                     1.0
                 };
                 [grey.clamp(0.0, 1.0); 3]
             }
-            shading if shading.is_data() && pixel.is_hit() => {
-                color.map(|channel| channel.clamp(0.0, 1.0))
-            }
-            Shading::Lit => self.develop(pixel.color()).to_array().map(srgb),
-            _ => color.map(srgb),
+            Quantity::Index => distinct(index_of(color)),
         }
     }
+}
+
+/// A colour for an index, unlike those of the indices near it: each channel from 0.2 to 1.
+fn distinct(index: u32) -> [f32; 3] {
+    // The finaliser of MurmurHash3 (A. Appleby, 2008): each bit of the index changes half of the bits.
+    let mut hash = index.wrapping_add(1);
+    hash = (hash ^ hash >> 16).wrapping_mul(0x85eb_ca6b);
+    hash = (hash ^ hash >> 13).wrapping_mul(0xc2b2_ae35);
+    hash ^= hash >> 16;
+    [0, 8, 16].map(|shift| 0.2 + 0.8 * ((hash >> shift) & 0xff) as f32 / 255.0)
 }
 
 /// The sRGB transfer curve, from linear to encoded, clamped to 0 … 1.
@@ -261,7 +273,7 @@ impl Curve {
 mod tests {
     use super::*;
     use glam::Vec3;
-    use spherule_kernel::Hit;
+    use spherule_kernel::{Hit, Shading};
 
     fn one_pixel(shading: Shading, color: Vec3, depth: f32) -> Vec<u8> {
         Image::new(1, 1, shading, vec![Pixel::new(color, depth)])
@@ -273,11 +285,9 @@ mod tests {
     fn light_is_curved_and_measurements_are_not() {
         let half = Vec3::splat(0.5);
         assert_eq!(one_pixel(Shading::Lit, half, 1.0), [188, 188, 188]);
-        assert_eq!(one_pixel(Shading::Normals, half, 1.0), [128, 128, 128]);
-        assert_eq!(
-            one_pixel(Shading::Normals, half, Hit::NONE_T),
-            [188, 188, 188]
-        );
+        assert_eq!(one_pixel(Shading::Flat, half, Hit::NONE_T), [188, 188, 188]);
+        let normal = Vec3::new(0.0, -1.0, 1.0);
+        assert_eq!(one_pixel(Shading::Normals, normal, 1.0), [128, 0, 255]);
         assert_eq!(one_pixel(Shading::Flat, Vec3::X, 1.0), [255, 0, 0]);
     }
 
@@ -309,6 +319,39 @@ mod tests {
         let image = Image::new(3, 1, Shading::Depth, pixels).expect("an image");
         assert_eq!(image.depth_range(), Some((2.0, 4.0)));
         assert_eq!(image.to_rgb8(), [255, 255, 255, 128, 128, 128, 0, 0, 0]);
+    }
+
+    #[test]
+    fn measurements_are_transparent_where_nothing_is_hit() {
+        for shading in Shading::ALL {
+            let pixels = [1.0, Hit::NONE_T].map(|depth| Pixel::new(Vec3::ONE, depth));
+            let image = Image::new(2, 1, shading, pixels.to_vec()).expect("an image");
+            let has_background = matches!(shading, Shading::Lit | Shading::Flat);
+            assert_eq!(image.has_alpha(), !has_background, "{shading:?}");
+            let alpha = if has_background { 255 } else { 0 };
+            assert_eq!(image.to_rgba8()[3], 255, "{shading:?}");
+            assert_eq!(image.to_rgba8()[7], alpha, "{shading:?}");
+        }
+    }
+
+    /// Neighbours in a row of spheres have colours that a person tells apart.
+    #[test]
+    fn indices_have_colours_of_their_own() {
+        let colors: Vec<[u8; 3]> = (0..1000)
+            .map(|index| distinct(index).map(|channel| (channel * 255.0) as u8))
+            .collect();
+        let away = |a: &[u8; 3], b: &[u8; 3]| -> u32 {
+            let channels = a.iter().zip(b);
+            channels.map(|(a, b)| u32::from(a.abs_diff(*b))).sum()
+        };
+        let close = colors
+            .windows(2)
+            .filter(|pair| away(&pair[0], &pair[1]) < 24);
+        assert!(close.count() < 10);
+        let mut all = colors.clone();
+        all.sort_unstable();
+        all.dedup();
+        assert!(all.len() > 995, "{}", all.len());
     }
 
     #[test]

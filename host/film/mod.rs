@@ -87,15 +87,23 @@ impl Image {
         Ok(())
     }
 
-    /// How opaque each pixel is; `None` if all are.
+    /// Whether any pixel may be less than opaque.
     #[must_use]
-    pub fn alpha(&self) -> Option<&[f32]> {
-        (!self.alpha.is_empty()).then_some(&self.alpha)
+    pub fn has_alpha(&self) -> bool {
+        !self.alpha.is_empty() || !self.shading.quantity().has_background()
     }
 
-    /// How opaque the pixel with this index is.
-    fn opacity(&self, index: usize) -> f32 {
-        self.alpha.get(index).copied().unwrap_or(1.0)
+    /// How opaque the pixel with this index is, row by row from the upper left, from 0 to 1. Measurements are transparent where nothing is
+    /// hit.
+    #[must_use]
+    pub fn opacity(&self, index: usize) -> f32 {
+        let is_there = self.shading.quantity().has_background()
+            || self.pixels.get(index).is_some_and(Pixel::is_hit);
+        if is_there {
+            self.alpha.get(index).copied().unwrap_or(1.0)
+        } else {
+            0.0
+        }
     }
 
     /// Width in pixels.

@@ -26,11 +26,13 @@ mod room;
 mod settings;
 mod tiles;
 
+use std::borrow::Cow;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use glam::Vec3;
+use spherule_kernel::shading::Quantity;
 use spherule_kernel::{Hit, Pixel, Shading};
 
 use crate::device::Device;
@@ -81,11 +83,17 @@ pub fn render(
     }
     let launch = whole_image(scene)?;
     memory_for(scene, size_of::<Pixel>() as u64)?;
+    let world = match settings.shading.quantity() {
+        Quantity::Index => Cow::Owned(scene.world.numbered()?),
+        Quantity::Light | Quantity::Color | Quantity::Vector | Quantity::Distance => {
+            Cow::Borrowed(&scene.world)
+        }
+    };
     let is_late = AtomicBool::new(false);
     let (mut pixels, timings) = match device {
         Device::Cpu => {
             let started = Instant::now();
-            let world = cpu::Prepared::new(&scene.world, settings.acceleration);
+            let world = cpu::Prepared::new(&world, settings.acceleration);
             let setup = started.elapsed();
             let progress = within(settings.time_limit, &is_late, progress);
             let pixels = cpu::render(&launch, &world, settings, &progress)?;
@@ -98,7 +106,7 @@ pub fn render(
         }
         Device::Gpu(gpu) => {
             let started = Instant::now();
-            let world = gpu::Prepared::new(gpu, &scene.world, settings)?;
+            let world = gpu::Prepared::new(gpu, &world, settings)?;
             let setup = started.elapsed();
             let progress = within(settings.time_limit, &is_late, progress);
             let (pixels, timings) = gpu::render(gpu, &launch, &world, &progress)?;

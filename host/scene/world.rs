@@ -3,6 +3,9 @@
 use glam::Vec3;
 use spherule_kernel::{Material, Sphere};
 
+use crate::error::Result;
+use crate::memory;
+
 /// Below this many spheres a thread goes on alone.
 pub(crate) const GRAIN: usize = 1 << 13;
 
@@ -86,5 +89,23 @@ impl World {
         if moves {
             self.velocities.resize(self.spheres.len(), Vec3::ZERO);
         }
+    }
+
+    /// The same spheres, each with its own index in place of its material's.
+    ///
+    /// # Errors
+    ///
+    /// [`OutOfHostMemory`](crate::Error::OutOfHostMemory) if there is no room for the copy.
+    pub(crate) fn numbered(&self) -> Result<Self> {
+        let count = self.spheres.len();
+        let mut spheres = memory::room(count as u64, "a copy of the spheres")?;
+        spheres.extend_from_slice(&self.spheres);
+        let mut material_ids = memory::room(count as u64, "the indices of the spheres")?;
+        material_ids.extend(0..count as u32);
+        Ok(Self {
+            spheres,
+            material_ids,
+            ..Self::default()
+        })
     }
 }

@@ -4,6 +4,8 @@ use exr::block::{self, UncompressedBlock, writer::ChunksWriter};
 use exr::meta::attribute::{ChannelDescription, SampleType};
 use exr::meta::header::{Header, LayerAttributes};
 use rayon::prelude::*;
+use spherule_kernel::Hit;
+use spherule_kernel::shading::{Quantity, index_of};
 
 use super::failure::Failure;
 use super::sink::{Sink, Trouble};
@@ -33,16 +35,42 @@ pub(super) fn most(width: u32, height: u32, has_alpha: bool) -> u64 {
     pixels * if has_alpha { 16 } else { 12 } + 28 * tiles(width, height) + 1000
 }
 
+/// What a channel of a file holds of each pixel.
+#[derive(Clone, Copy)]
+enum Channel {
+    /// A component of the colour.
+    Color(usize),
+    Alpha,
+    /// A distance, infinite where nothing is hit.
+    Distance,
+    /// The index of a sphere, [`Hit::NONE_SPHERE`] where nothing is hit.
+    Index,
+}
+
+/// The channels of a file by name, in the order of the alphabet, as a file has them.
+fn channels(image: &Image) -> Vec<(&'static str, SampleType, Channel)> {
+    let (float, whole) = (SampleType::F32, SampleType::U32);
+    let mut channels = match image.shading().quantity() {
+        Quantity::Light | Quantity::Color | Quantity::Vector => vec![
+            ("B", float, Channel::Color(2)),
+            ("G", float, Channel::Color(1)),
+            ("R", float, Channel::Color(0)),
+        ],
+        Quantity::Distance => vec![("Z", float, Channel::Distance)],
+        Quantity::Index => vec![("id", whole, Channel::Index)],
+    };
+    if image.has_alpha() {
+        channels.insert(0, ("A", float, Channel::Alpha));
+    }
+    channels
+}
+
 /// Writes the image. `OpenEXR`'s colours are premultiplied, as ours.
 pub(super) fn write(image: &Image, sink: Sink<'_>, trouble: &Trouble) -> Result<(), Failure> {
-    // A file's channels are in the order of the alphabet; each is where its letter is in a colour.
-    let channels: &[(&str, usize)] = match image.alpha() {
-        Some(_) => &[("A", 3), ("B", 2), ("G", 1), ("R", 0)],
-        None => &[("B", 2), ("G", 1), ("R", 0)],
-    };
+    let channels = channels(image);
     let descriptions = channels
         .iter()
-        .map(|(name, _)| ChannelDescription::named(*name, SampleType::F32))
+        .map(|(name, sample_type, _)| ChannelDescription::named(*name, *sample_type))
         .collect();
     let size = (image.width() as usize, image.height() as usize);
     // Run-length encoding, tiles of 64 × 64, in any order.
@@ -63,7 +91,7 @@ pub(super) fn write(image: &Image, sink: Sink<'_>, trouble: &Trouble) -> Result<
                 .map(|(at, index)| {
                     let channel_list = &meta.headers[0].channels;
                     let block = UncompressedBlock::from_lines(channel_list, index, |line| {
-                        let (_, channel) = channels[line.location.channel];
+                        let (_, _, channel) = channels[line.location.channel];
                         let from = line.location.position;
                         let first = from.y() * size.0 + from.x();
                         put_line(image, first, channel, line.value);
@@ -80,19 +108,20 @@ pub(super) fn write(image: &Image, sink: Sink<'_>, trouble: &Trouble) -> Result<
 }
 
 /// One channel of the pixels from the one with the index `first` on, as bytes in the machine's order.
-fn put_line(image: &Image, first: usize, channel: usize, bytes: &mut [u8]) {
-    let (floats, _) = bytes.as_chunks_mut::<4>();
-    match image.alpha() {
-        Some(alpha) if channel == 3 => {
-            for (bytes, alpha) in floats.iter_mut().zip(&alpha[first..]) {
-                *bytes = alpha.to_ne_bytes();
-            }
-        }
-        _ => {
-            for (bytes, pixel) in floats.iter_mut().zip(&image.pixels()[first..]) {
-                *bytes = pixel.color()[channel].to_ne_bytes();
-            }
-        }
+fn put_line(image: &Image, first: usize, channel: Channel, bytes: &mut [u8]) {
+    let (words, _) = bytes.as_chunks_mut::<4>();
+    let pixels = &image.pixels()[first..];
+    for (at, (bytes, pixel)) in words.iter_mut().zip(pixels).enumerate() {
+        let has_measured = pixel.is_hit() || image.shading().quantity().has_background();
+        *bytes = match channel {
+            Channel::Color(component) if has_measured => pixel.color()[component].to_ne_bytes(),
+            Channel::Color(_) => 0.0_f32.to_ne_bytes(),
+            Channel::Alpha => image.opacity(first + at).to_ne_bytes(),
+            Channel::Distance if has_measured => pixel.color().x.to_ne_bytes(),
+            Channel::Distance => f32::INFINITY.to_ne_bytes(),
+            Channel::Index if has_measured => index_of(pixel.color()).to_ne_bytes(),
+            Channel::Index => Hit::NONE_SPHERE.to_ne_bytes(),
+        };
     }
 }
 

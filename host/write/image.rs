@@ -44,7 +44,7 @@ impl Image {
     /// [`Error::OutOfHostMemory`] if there is no memory for its rows.
     pub fn save(&self, path: impl AsRef<Path>) -> Result<()> {
         let output = Output::image(path.as_ref())?;
-        let has_alpha = self.alpha().is_some();
+        let has_alpha = self.has_alpha();
         let format = Format::of(output.path())?;
         let room = Room::reserve(format, self.width(), self.height(), has_alpha)?;
         self.save_to(&output, room)
@@ -73,7 +73,7 @@ impl Image {
 
 /// The bytes of a file of this kind that could not be compressed at all.
 fn most(format: Format, image: &Image) -> u64 {
-    let has_alpha = image.alpha().is_some();
+    let has_alpha = image.has_alpha();
     match format {
         Format::Png => png::most(image.width(), image.height(), has_alpha),
         Format::Exr => exr::most(image.width(), image.height(), has_alpha),

@@ -51,7 +51,7 @@ pub(super) fn write(image: &Image, mut sink: Sink<'_>, trouble: &Trouble) -> Res
     stream.finish()?;
     writer.finish()?;
     // Noise takes more room by this compression than without any.
-    let most = most(image.width(), image.height(), image.alpha().is_some());
+    let most = most(image.width(), image.height(), image.has_alpha());
     if sink.stream_position()? > most {
         sink.clear();
         write_stored(image, &mut sink, trouble)?;
@@ -66,7 +66,7 @@ fn write_stored(image: &Image, sink: &mut Sink<'_>, trouble: &Trouble) -> Result
     let mut sum = Adler32::new();
     let mut block = Block::default();
     writer.write_chunk(chunk::IDAT, &[0x78, 0x01])?;
-    let row = row(image.width(), image.alpha().is_some());
+    let row = row(image.width(), image.has_alpha());
     for_bands(image, trouble, |band| {
         for row in band.chunks_exact(row) {
             for mut bytes in [&[UNFILTERED], row] {
@@ -131,9 +131,10 @@ fn header<'a, 'b>(
     sink: &'a mut Sink<'b>,
 ) -> Result<png::Writer<&'a mut Sink<'b>>, Failure> {
     let mut encoder = Encoder::new(sink, image.width(), image.height());
-    encoder.set_color(match image.alpha() {
-        Some(_) => ColorType::Rgba,
-        None => ColorType::Rgb,
+    encoder.set_color(if image.has_alpha() {
+        ColorType::Rgba
+    } else {
+        ColorType::Rgb
     });
     encoder.set_depth(BitDepth::Eight);
     encoder.set_deflate_compression(DeflateCompression::FdeflateUltraFast);
@@ -148,7 +149,7 @@ fn for_bands(
     mut write: impl FnMut(&[u8]) -> Result<(), Failure>,
 ) -> Result<(), Failure> {
     let width = image.width() as usize;
-    let has_alpha = image.alpha().is_some();
+    let has_alpha = image.has_alpha();
     let row = row(image.width(), has_alpha);
     let rows = (BAND / row).clamp(1, image.height() as usize);
     let mut band = Vec::new();
@@ -202,7 +203,7 @@ mod tests {
         };
         let count = (width * height) as usize;
         let pixels = (0..count).map(|_| Pixel::new(value(), 1.0)).collect();
-        let mut image = Image::new(width, height, Shading::Normals, pixels).expect("an image");
+        let mut image = Image::new(width, height, Shading::Flat, pixels).expect("an image");
         if has_alpha {
             image
                 .set_alpha((0..count).map(|_| value().x).collect())

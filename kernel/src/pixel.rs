@@ -93,7 +93,8 @@ impl Launch {
         Pixel::new(self.background, Hit::NONE_T)
     }
 
-    /// What a pixel must hold after its ray has found `hit`, and `otherwise` if it found none.
+    /// What a pixel must hold after its ray has found `hit`, and `otherwise` if it found none. In [`Shading::Id`](crate::Shading::Id)
+    /// `material_ids` are those of the spheres themselves.
     #[expect(
         clippy::too_many_arguments,
         reason = "these are the kernel's bindings, one each"
@@ -119,6 +120,7 @@ impl Launch {
                 hit,
                 surface: Surface::at(ray, hit.t, sphere),
                 material: material_of(index, material_ids, materials),
+                tag: read(material_ids, index),
             };
             result = Pixel::new(shade(shading, seen), hit.t);
         }

@@ -14,6 +14,23 @@ pub enum Quantity {
     Light,
     /// A colour that stays as it is, with a background where nothing is hit.
     Color,
+    /// A vector of unit length, and nothing where nothing is hit.
+    Vector,
+    /// A distance in scene units, infinite where nothing is hit.
+    Distance,
+    /// The index of a sphere, as [`index_of`] reads it, and nothing where nothing is hit.
+    Index,
+}
+
+impl Quantity {
+    /// Whether a pixel where nothing is hit shows the background, instead of being transparent.
+    #[must_use]
+    pub const fn has_background(self) -> bool {
+        match self {
+            Self::Light | Self::Color => true,
+            Self::Vector | Self::Distance | Self::Index => false,
+        }
+    }
 }
 
 /// A hit, as it is shown. Values, because naga takes no struct of pointers.
@@ -27,6 +44,8 @@ pub struct Seen {
     pub surface: Surface,
     /// What it is made of.
     pub material: Material,
+    /// What the launch knows the sphere by: the index of its material, or in [`Shading::Id`] its own in the scene.
+    pub tag: u32,
 }
 
 /// Makes the enum, and what decides by it, of the list below.
@@ -85,12 +104,14 @@ shadings! {
     /// A lamp at the eye and Lambert's cosine law, with the colour of the sphere's material.
     #[default]
     Lit = 0, "lit", "Light: the scene's own, or else a lamp at the eye", Light, lit;
-    /// The outward unit normal n, as n · 0.5 + 0.5.
-    Normals = 1, "normals", "The surface normal n as the colour n · 0.5 + 0.5", Color, normal;
+    /// The outward unit normal.
+    Normals = 1, "normals", "The surface normal n as the colour n · 0.5 + 0.5 (EXR: n)", Vector, normal;
     /// The distance from the eye, in scene units, in all three channels.
-    Depth = 2, "depth", "The distance from the eye: white is near, black is far (EXR: in scene units)", Color, distance;
+    Depth = 2, "depth", "The distance from the eye: white is near, black is far (EXR: Z in scene units)", Distance, distance;
     /// Pure red.
     Flat = 3, "flat", "Red where there is a hit", Color, red;
+    /// Which sphere: its index in the scene.
+    Id = 4, "id", "Which sphere: a colour for each (EXR: id, its index in the scene)", Index, index;
 }
 
 impl Shading {
@@ -129,7 +150,7 @@ fn lit(seen: Seen) -> Vec3 {
 
 #[inline]
 fn normal(seen: Seen) -> Vec3 {
-    seen.surface.normal * 0.5 + Vec3::splat(0.5)
+    seen.surface.normal
 }
 
 #[inline]
@@ -140,4 +161,17 @@ fn distance(seen: Seen) -> Vec3 {
 #[inline]
 fn red(_: Seen) -> Vec3 {
     Vec3::X
+}
+
+/// The lower and the upper half of the index: floats hold each exactly.
+#[inline]
+fn index(seen: Seen) -> Vec3 {
+    Vec3::new((seen.tag & 0xffff) as f32, (seen.tag >> 16) as f32, 0.0)
+}
+
+/// The index that a pixel of [`Shading::Id`] holds.
+#[inline]
+#[must_use]
+pub fn index_of(color: Vec3) -> u32 {
+    (color.y as u32) << 16 | (color.x as u32 & 0xffff)
 }

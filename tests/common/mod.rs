@@ -78,3 +78,10 @@ pub fn noop_adapter(features: wgpu::Features) -> wgpu::Adapter {
     });
     adapters(&instance).swap_remove(0)
 }
+
+/// How opaque each pixel of an image is, row by row.
+pub fn opacities(image: &spherule::Image) -> Vec<f32> {
+    (0..image.pixels().len())
+        .map(|index| image.opacity(index))
+        .collect()
+}

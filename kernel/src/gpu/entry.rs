@@ -337,6 +337,7 @@ pub fn shade_hits(
             hit,
             surface: Surface::at(ray, hit.t, spheres[index]),
             material: materials[index],
+            tag: id.x,
         };
         let mut mode = 0;
         while mode < MODES {
