@@ -271,6 +271,7 @@ impl Error {
 }
 
 /// The one of `names` that `text` was probably meant to be.
+#[cfg(feature = "lab")]
 pub(crate) fn nearest<'a>(text: &str, names: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let text = text.to_lowercase();
     let likeness = |name: &str| strsim::jaro_winkler(&text, &name.to_lowercase());

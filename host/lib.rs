@@ -17,6 +17,7 @@
 //! | [`mod@render`] | a scene on a device, GPU or CPU |
 //! | [`film`] | images: encoding, comparison |
 //! | `write` | outputs: checked before the work, written whole or not at all |
+//! | [`mod@choose`] | which rung a scene calls for |
 //! | [`accuracy`] | how right the rungs of the ladder are, decided by an exact oracle |
 //! | [`mod@bench`] | how fast rays of every kind are |
 //! | [`error`] | [`Error`]: what can go wrong, and how to mend it |
@@ -30,14 +31,18 @@
 #![deny(missing_docs)]
 
 pub mod accel;
+#[cfg(feature = "lab")]
 pub mod accuracy;
+#[cfg(feature = "lab")]
 pub mod bench;
+pub mod choose;
 #[cfg(feature = "cli")]
 pub mod cli;
 pub mod cpu;
 pub mod device;
 pub mod error;
 pub mod film;
+#[cfg(feature = "gpu")]
 pub mod kernel_module;
 mod lanes;
 pub mod look;
@@ -53,18 +58,27 @@ pub mod trace;
 pub mod ulp;
 pub(crate) mod write;
 
-pub use device::{Device, DeviceChoice, Gpu};
+#[cfg(feature = "gpu")]
+pub use device::Gpu;
+pub use device::{Device, DeviceChoice};
 pub use error::{Error, Result};
 pub use film::Image;
 pub use scene::Scene;
 pub use spherule_kernel as kernel;
+#[cfg(feature = "gpu")]
 pub use wgpu;
 
 /// Compiles the programs of the README and of the book, so that they stay true.
-#[cfg(doctest)]
+#[cfg(all(doctest, feature = "gpu", feature = "lab"))]
 mod book {
     #[doc = include_str!("../README.md")]
     struct Readme;
     #[doc = include_str!("../docs/gpu-errors.md")]
     struct GpuErrors;
+    #[doc = include_str!("../docs/library.md")]
+    struct Library;
+    #[doc = include_str!("../docs/practical.md")]
+    struct Practical;
+    #[doc = include_str!("../docs/own-kernel.md")]
+    struct OwnKernel;
 }

@@ -9,7 +9,6 @@
 //! | [`families`] | families of rays, each hard in its own way |
 //! | [`screen`] | 64-bit arithmetic with an error bound, to spare the oracle most of its work |
 //! | [`measure`] | how far a rung's answers are from the truth |
-//! | [`choose`] | which rung a scene calls for |
 //! | [`scene_rays`] | the rays of a scene as such a family |
 //! | [`frames`] | what each rung costs and gets right in a whole frame |
 //! | [`samples`] | the error of an image as its samples grow |
@@ -18,7 +17,6 @@
 
 pub mod ask;
 pub mod cases;
-pub mod choose;
 pub mod families;
 pub mod frames;
 pub mod measure;

@@ -9,8 +9,8 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use spherule_kernel::{Effects, Rung, Shading};
 
 use crate::accel::Acceleration;
-use crate::accuracy::choose::DEFAULT_TOLERANCE;
 use crate::accuracy::families::Family;
+use crate::choose::DEFAULT_TOLERANCE;
 use crate::device::DeviceChoice;
 use crate::error::nearest;
 use crate::read;

@@ -12,7 +12,7 @@ use super::args::ExplainArguments;
 use super::precision::choose_rung;
 use super::progress::Bar;
 use super::{load, note, write_json};
-use crate::accuracy::choose::DEFAULT_TOLERANCE;
+use crate::choose::DEFAULT_TOLERANCE;
 use crate::device::Device;
 use crate::error::Result;
 use crate::kernel_module;

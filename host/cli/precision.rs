@@ -3,7 +3,7 @@
 use spherule_kernel::Rung;
 
 use super::args::Precision;
-use crate::accuracy::choose::choose;
+use crate::choose::choose;
 use crate::device::Device;
 use crate::scene::Scene;
 

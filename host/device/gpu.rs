@@ -21,8 +21,9 @@ use std::time::{Duration, Instant};
 
 use bytemuck::Pod;
 
-use super::adapter::{self, DeviceChoice};
+use super::adapter;
 use super::buffer::{Access, Binding, Buffer, Owner};
+use super::choice::DeviceChoice;
 use super::errors::{Watch, caught, one_line};
 use super::kernel::{Kernel, LaunchTime};
 use super::mapping::{LATE, map};

@@ -13,26 +13,42 @@
 //! Nothing in here knows of scenes or images. A program with kernels of its own uses it as it
 //! is: see `examples/own-kernel`.
 
+#[cfg(feature = "gpu")]
 pub mod adapter;
+#[cfg(feature = "gpu")]
 pub mod buffer;
+#[cfg(feature = "gpu")]
 pub mod canary;
+mod choice;
+#[cfg(feature = "gpu")]
 mod errors;
+#[cfg(feature = "gpu")]
 pub mod gpu;
+#[cfg(feature = "gpu")]
 pub mod kernel;
+#[cfg(feature = "gpu")]
 mod mapping;
+#[cfg(feature = "gpu")]
 pub mod spirv;
+#[cfg(feature = "gpu")]
 mod timer;
-
-use std::time::Instant;
 
 use crate::error::Result;
 use crate::plural::count_of;
-pub use adapter::{AdapterReport, DeviceChoice, list_adapters};
+#[cfg(feature = "gpu")]
+pub use adapter::{AdapterReport, list_adapters};
+#[cfg(feature = "gpu")]
 pub use buffer::{Access, Binding, Buffer};
+pub use choice::DeviceChoice;
+#[cfg(feature = "gpu")]
 pub use errors::is_catching;
+#[cfg(feature = "gpu")]
 pub(crate) use gpu::Staging;
+#[cfg(feature = "gpu")]
 pub use gpu::{Gpu, GpuOptions};
+#[cfg(feature = "gpu")]
 pub use kernel::{Kernel, LaunchTime};
+#[cfg(feature = "gpu")]
 pub use spirv::Module;
 
 /// What renders: the CPU, or a GPU.
@@ -41,6 +57,7 @@ pub enum Device {
     /// The CPU, on every thread of rayon's pool.
     Cpu,
     /// A GPU, or a software adapter.
+    #[cfg(feature = "gpu")]
     Gpu(Box<Gpu>),
 }
 
@@ -51,8 +68,9 @@ impl Device {
     ///
     /// The errors of [`Gpu::open`], where a GPU was asked for. [`DeviceChoice::Auto`] never
     /// fails: a GPU that does not open leaves the CPU.
+    #[cfg(feature = "gpu")]
     pub fn open(choice: &DeviceChoice) -> Result<(Self, String)> {
-        let started = Instant::now();
+        let started = std::time::Instant::now();
         let (adapter, reason) = adapter::choose(choice)?;
         let Some(adapter) = adapter else {
             tracing::debug!(
@@ -74,11 +92,29 @@ impl Device {
         }
     }
 
+    /// Opens the CPU; also says why it was chosen, in a few words.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::NoAdapter`](crate::Error::NoAdapter) where a GPU was asked for: this build has the feature `gpu` off.
+    #[cfg(not(feature = "gpu"))]
+    pub fn open(choice: &DeviceChoice) -> Result<(Self, String)> {
+        match choice {
+            DeviceChoice::Auto => Ok((Self::Cpu, "built without the feature `gpu`".into())),
+            DeviceChoice::Cpu => Ok((Self::Cpu, "asked for".into())),
+            DeviceChoice::Gpu | DeviceChoice::Named(_) => Err(crate::Error::NoAdapter {
+                wanted: format!("can be used for `{choice}`"),
+                found: "this build has the feature `gpu` off".into(),
+            }),
+        }
+    }
+
     /// The device's name for a person.
     #[must_use]
     pub fn name(&self) -> String {
         match self {
             Self::Cpu => format!("CPU, {}", count_of(rayon::current_num_threads(), "thread")),
+            #[cfg(feature = "gpu")]
             Self::Gpu(gpu) => gpu.name().into(),
         }
     }
@@ -88,6 +124,7 @@ impl Device {
     pub fn has_f64(&self) -> bool {
         match self {
             Self::Cpu => true,
+            #[cfg(feature = "gpu")]
             Self::Gpu(gpu) => gpu.has_f64(),
         }
     }
@@ -97,6 +134,7 @@ impl Device {
     pub fn backend(&self) -> &'static str {
         match self {
             Self::Cpu => "cpu",
+            #[cfg(feature = "gpu")]
             Self::Gpu(_) => "gpu",
         }
     }

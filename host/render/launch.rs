@@ -51,6 +51,7 @@ pub(super) fn check_launch(launch: &Launch) -> Result<()> {
 }
 
 /// Whether a launch covers an image that can be, all of it.
+#[cfg(feature = "gpu")]
 pub(super) fn check_whole(launch: &Launch) -> Result<()> {
     check_launch(&Launch {
         tile_origin: glam::UVec2::ZERO,

@@ -16,14 +16,17 @@ pub mod cost;
 pub mod cpu;
 pub mod estimate;
 pub mod fit;
+#[cfg(feature = "gpu")]
 pub mod gpu;
 mod launch;
+#[cfg(feature = "gpu")]
 pub mod pace;
 mod packet;
 pub mod paths;
 mod rendered;
 mod room;
 mod settings;
+#[cfg(feature = "gpu")]
 mod tiles;
 
 use std::borrow::Cow;
@@ -104,6 +107,7 @@ pub fn render(
             };
             (pixels, timings)
         }
+        #[cfg(feature = "gpu")]
         Device::Gpu(gpu) => {
             let started = Instant::now();
             let world = gpu::Prepared::new(gpu, &world, settings)?;

@@ -18,6 +18,7 @@ mod boxes_avx2;
 #[cfg(target_arch = "x86_64")]
 mod boxes_avx512;
 pub mod cpu;
+#[cfg(feature = "gpu")]
 pub mod gpu;
 pub(crate) mod levels;
 mod search;
@@ -32,4 +33,5 @@ mod walk;
 mod wide;
 
 pub use cpu::CpuTracer;
+#[cfg(feature = "gpu")]
 pub use gpu::GpuTracer;

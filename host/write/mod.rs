@@ -16,10 +16,12 @@
 mod exr;
 mod failure;
 mod format;
+#[cfg(feature = "lab")]
 mod identity;
 pub mod image;
 pub mod output;
 mod png;
+#[cfg(feature = "lab")]
 pub mod same;
 mod sink;
 mod stream;
@@ -32,6 +34,7 @@ use std::path::Path;
 pub use format::Format;
 #[cfg(feature = "cli")]
 pub use image::Room;
+#[cfg(feature = "lab")]
 pub use output::Output;
 #[cfg(feature = "cli")]
 pub(crate) use temporary::remove_all as remove_unfinished;

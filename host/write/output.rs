@@ -2,16 +2,20 @@
 
 use std::cell::OnceCell;
 use std::fs::{self, File, Metadata, OpenOptions};
-use std::io::{self, Read, Seek, Write};
+#[cfg(feature = "lab")]
+use std::io::Write;
+use std::io::{self, Read, Seek};
 use std::path::{Path, PathBuf};
 
 use super::directory_of;
 use super::failure::{Failure, failed, help_for, is_full, said, stdout_failed};
 use super::format::{Format, PURPOSE};
+#[cfg(feature = "lab")]
 use super::identity::Identity;
 use super::sink::{Sink, Trouble};
 use super::stream::{Stream, of_this_process};
 use super::temporary::{Temporary, remove_dead};
+#[cfg(feature = "lab")]
 use super::waiting;
 use crate::error::{Error, Result, bytes};
 use crate::memory;
@@ -108,6 +112,7 @@ impl Output {
     }
 
     /// Whether it is standard output, as `-` or by another name.
+    #[cfg(feature = "lab")]
     #[must_use]
     pub fn is_stdout(&self) -> bool {
         match &self.place {
@@ -117,6 +122,7 @@ impl Output {
         }
     }
 
+    #[cfg(feature = "lab")]
     pub(super) fn identity(&self) -> Option<Identity> {
         match &self.place {
             _ if self.is_stdout() => Identity::of_stdout(),
@@ -130,6 +136,7 @@ impl Output {
     /// # Errors
     ///
     /// [`Error::Output`] if they cannot be written.
+    #[cfg(feature = "lab")]
     pub fn write(&self, bytes: &[u8]) -> Result<()> {
         match &self.place {
             Place::Stdout => to_stdout(bytes),
@@ -366,6 +373,7 @@ impl Output {
     }
 }
 
+#[cfg(feature = "lab")]
 fn to_stdout(bytes: &[u8]) -> Result<()> {
     printed(waiting::put(io::stdout().lock(), bytes))
 }
@@ -375,6 +383,7 @@ fn to_stdout(bytes: &[u8]) -> Result<()> {
 /// # Errors
 ///
 /// [`Error::Output`] for any other reason.
+#[cfg(feature = "lab")]
 pub(crate) fn printed(printed: io::Result<()>) -> Result<()> {
     match printed {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(stdout_failed(&error)),

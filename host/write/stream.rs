@@ -11,6 +11,7 @@ use super::waiting::{Waiting, put};
 #[derive(Debug)]
 pub(super) struct Stream {
     path: PathBuf,
+    #[cfg(feature = "lab")]
     is_stdout: bool,
     /// `None` for a pipe that nobody reads yet: opening that waits for a reader.
     opened: Option<File>,
@@ -21,16 +22,19 @@ impl Stream {
     pub(super) fn new(path: &Path) -> io::Result<Self> {
         Ok(Self {
             path: path.into(),
+            #[cfg(feature = "lab")]
             is_stdout: own_number(path) == Some(1),
             opened: open(path)?,
         })
     }
 
     /// Whether it is standard output, by another name than `-`.
+    #[cfg(feature = "lab")]
     pub(super) fn is_stdout(&self) -> bool {
         self.is_stdout
     }
 
+    #[cfg(feature = "lab")]
     pub(super) fn write(&self, bytes: &[u8]) -> io::Result<()> {
         self.fill(|write| write(bytes))
     }

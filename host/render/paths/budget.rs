@@ -68,6 +68,7 @@ impl Budget {
     }
 
     /// With no more samples in a launch than these, of which there is one.
+    #[cfg(feature = "gpu")]
     pub(super) fn with_at_most(self, most: u32) -> Self {
         Self {
             most: most.max(1),

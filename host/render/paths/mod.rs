@@ -10,6 +10,7 @@
 
 pub mod budget;
 pub mod cpu;
+#[cfg(feature = "gpu")]
 pub mod gpu;
 pub mod prepare;
 mod preview;
@@ -72,6 +73,7 @@ pub fn render(
         reached,
     } = match device {
         Device::Cpu => cpu::render(&prepared, settings, progress)?,
+        #[cfg(feature = "gpu")]
         Device::Gpu(gpu) => gpu::render(gpu, &prepared, settings, progress)?,
     };
     timings.setup += setup;
