@@ -1,9 +1,9 @@
-//! Boxes along the axes, as the tree's builder has them.
+//! Axis-aligned boxes, as the tree's builder uses them.
 
 use glam::{DVec3, Vec3, Vec4};
 use spherule_kernel::Sphere;
 
-/// A box. What the fourth coordinates hold does not matter.
+/// An axis-aligned box. The fourth coordinates are not used.
 #[derive(Clone, Copy)]
 pub(super) struct Aabb {
     pub(super) low: Vec4,
@@ -16,7 +16,7 @@ impl Aabb {
         high: Vec4::splat(f32::MIN),
     };
 
-    /// Of a sphere at rest, rounded outwards.
+    /// The box around a sphere at rest, rounded outwards.
     pub(super) fn of(sphere: &Sphere) -> Self {
         let (center, radius) = (sphere.center(), sphere.radius().abs());
         let low = (center - radius).to_array().map(f32::next_down);
@@ -27,7 +27,8 @@ impl Aabb {
         }
     }
 
-    /// Of a sphere, wherever it is while the shutter is open, rounded outwards.
+    /// The box around every position of a moving sphere while the shutter is open, rounded
+    /// outwards.
     pub(super) fn of_moving(sphere: &Sphere, velocity: Vec3, shutter: (f32, f32)) -> Self {
         let radius = DVec3::splat(f64::from(sphere.radius().abs()));
         let at = |time: f32| sphere.center().as_dvec3() + velocity.as_dvec3() * f64::from(time);
@@ -55,7 +56,7 @@ impl Aabb {
             .fold(Self::EMPTY, |bounds, item| bounds.with(item.bounds()))
     }
 
-    /// Of twice their middles.
+    /// The box around twice the middles of the items.
     pub(super) fn of_middles(items: &[Item]) -> Self {
         items
             .iter()
@@ -69,14 +70,14 @@ impl Aabb {
         }
     }
 
-    /// Half of the surface, or nothing for an empty box.
+    /// Half of the surface area; 0 for an empty box.
     pub(super) fn area(self) -> f32 {
         let side = (self.high - self.low).max(Vec4::ZERO);
         side.x * (side.y + side.z) + side.y * side.z
     }
 }
 
-/// A sphere's box, and its index in the bits of `low`'s fourth coordinate.
+/// A sphere's box. The bits of `low`'s fourth coordinate hold the sphere's index.
 #[derive(Clone, Copy)]
 pub(super) struct Item {
     pub(super) low: Vec4,
@@ -107,7 +108,7 @@ impl Item {
         }
     }
 
-    /// Twice the middle.
+    /// Twice the middle of the box.
     pub(super) fn middle(&self) -> Vec4 {
         self.low + self.high
     }

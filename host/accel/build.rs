@@ -1,11 +1,12 @@
-//! From spheres to a tree of boxes, on every thread.
+//! Builds a tree of boxes over spheres, on every thread.
 //!
 //! Top down, by the surface area heuristic over bins (I. Wald, On fast Construction of SAH-based
-//! Bounding Volume Hierarchies, RT 2007). Two halves are split again until a node has its eight children;
-//! a part that fits into a node less high is left alone, so that nodes are full at the bottom, where
-//! most of them are. Within a node each axis is split along before one is split along again, unless the middles are much
-//! farther apart along it: so that octants tell the children's order. The spheres of one node, up to 32, are shared out among its children by the same
-//! heuristic, over every place where they could be split.
+//! Bounding Volume Hierarchies, RT 2007). The parts of a node are split in two again until the node
+//! has its eight children. A part that fits into a node one level lower is not split, so that nodes
+//! are full at the bottom, where most of them are. Within a node, each axis is split once before
+//! any is split again, unless the middles are much farther apart along one: this way the octant of
+//! a ray gives the order of the children. The spheres of a node of up to 32 are distributed among
+//! its children by the same heuristic, over every place where they could be split.
 
 use glam::{UVec4, Vec3};
 use rayon::prelude::*;
@@ -18,12 +19,13 @@ use super::split::{Part, SHARED, split, split_along, widest_axis};
 use super::tree::{BuiltTree, Nodes};
 use crate::scene::world::GRAIN;
 
-/// The most spheres of a node without nodes in it.
+/// The most spheres in a node that has no nodes as children.
 const FULL: usize = Node::WIDTH * Node::MAX_LEAF;
 
-/// Grows a tree over spheres that move while the shutter is open; those beyond the end of `velocities` are
-/// at rest. Without one where there are none or fewer than `min_spheres`, where a number is not finite or beyond
-/// [`Node::MAX_COORDINATE`], or where there are more spheres than nodes can name.
+/// Builds a tree over spheres that move while the shutter is open; those beyond the end of
+/// `velocities` are at rest. Returns `None` if there are no spheres or fewer than `min_spheres`, if
+/// a number is not finite or is beyond [`Node::MAX_COORDINATE`], or if there are more spheres than
+/// nodes can index.
 #[must_use]
 pub fn build(
     spheres: &[Sphere],
@@ -75,7 +77,7 @@ pub fn build(
         high: bounds.high.truncate(),
         smallest_radius,
     };
-    // What splits of many items are sorted into.
+    // Splits of many items sort into it.
     let room = if count < SHARED { 0 } else { count };
     let scratch = (0..room).into_par_iter().with_min_len(GRAIN);
     let mut scratch: Vec<Item> = scratch.map(|_| Item::NONE).collect();
@@ -116,27 +118,27 @@ pub fn build_still(spheres: &[Sphere], min_spheres: usize) -> Option<BuiltTree> 
     build(spheres, &[], (0.0, 0.0), min_spheres)
 }
 
-/// A node and what is below it.
+/// A node and everything below it.
 struct Branch {
-    /// The node; its indices count from the starts of `nodes` and `order`.
+    /// The node. Its indices are relative to the starts of `nodes` and `order`.
     node: Node,
-    /// What was grown below by one thread.
+    /// The nodes below that one thread built.
     nodes: Vec<Node>,
     order: Vec<u32>,
-    /// What was grown below by others: the children that are nodes.
+    /// The branches that other threads built: the children that are nodes.
     branches: Vec<Branch>,
 }
 
-/// What a tree is grown over.
+/// What the tree is built over.
 #[derive(Clone, Copy)]
 struct Given<'a> {
     spheres: &'a [Sphere],
-    /// Empty where nothing moves.
+    /// Empty if nothing moves.
     velocities: &'a [Vec3],
 }
 
 impl Given<'_> {
-    /// What equal spheres have in common, bit for bit.
+    /// Bits that are the same exactly for equal spheres.
     fn key(&self, index: u32) -> [u32; 7] {
         let sphere = &self.spheres[index as usize];
         let velocity = self.velocities.get(index as usize).copied();
@@ -147,15 +149,16 @@ impl Given<'_> {
 }
 
 impl<'a> Part<'a> {
-    /// Whether all middles are the same, so that no plane tells the items apart.
+    /// Whether all middles are the same, so that no plane separates the items.
     fn is_in_one_place(&self) -> bool {
         (self.middles.high - self.middles.low).truncate() == Vec3::ZERO
     }
 
-    /// Of equal spheres the one with the lowest index, the rest left out: wherever a ray meets the
-    /// others it meets that one, too. Boxes stay as they are. Done only where the middles are in one place, which costs ordinary
-    /// worlds nothing; elsewhere a ray that meets equal spheres finds the one that comes first in the tree, which need not be
-    /// the one with the lowest index.
+    /// Keeps the one with the lowest index of equal spheres and drops the rest: a ray that hits a
+    /// dropped one hits the kept one at the same distance. Boxes stay as they are. This is done
+    /// only if all middles are in one place, so that it costs ordinary worlds nothing. Elsewhere, a
+    /// ray that hits equal spheres finds the first of them in the tree, which may not have the
+    /// lowest index.
     fn without_copies(self, given: Given<'_>) -> Self {
         if !self.is_in_one_place() {
             return self;
@@ -206,7 +209,7 @@ impl Branch {
         branch
     }
 
-    /// How many nodes there are below this one.
+    /// The number of nodes below this one.
     fn count_nodes(&self) -> usize {
         let below = self.branches.iter().map(|branch| 1 + branch.count_nodes());
         self.nodes.len() + below.sum::<usize>()
@@ -217,8 +220,9 @@ impl Branch {
         self.order.len() + below.sum::<usize>()
     }
 
-    /// Puts the node and what is below it where they belong in the tree: `nodes` has room for those below it, the first of which is number
-    /// `first_node`, and `order` for its spheres.
+    /// Moves the node and everything below it to their places in the tree. `nodes` has room for the
+    /// nodes below, the first of which has the index `first_node`; `order` has room for the
+    /// spheres.
     fn put(
         self,
         node: &mut Node,
@@ -258,7 +262,7 @@ impl Branch {
     }
 }
 
-/// The node over these items; what is below it goes to the ends of `nodes` and `order`.
+/// The node over these items. What is below it is appended to `nodes` and `order`.
 fn build_alone(
     part: Part<'_>,
     depth: usize,
@@ -277,8 +281,8 @@ fn build_alone(
     node
 }
 
-/// A node over these items, whose first child that is a node is at `first_node`; its spheres go to
-/// the end of `order`. Returns those children, too.
+/// Makes the node over these items, and returns it with its children that are nodes. `first_node`
+/// is the index of the first of them. The node's own spheres are appended to `order`.
 fn make_node<'a>(
     whole: Part<'a>,
     depth: usize,
@@ -297,8 +301,9 @@ fn make_node<'a>(
             ..whole
         });
         while parts.len() < Node::WIDTH {
-            // The largest of those that are too large for a lower node, and at last none is.
-            // One whose middles are in one place is left whole: it may be copies of one sphere.
+            // The part with the largest surface among those too large for a lower node, until there
+            // is none. A part whose middles are in one place is not split: it may be copies of one
+            // sphere.
             let widest = (0..parts.len())
                 .filter(|part| parts[*part].items.len() > limit)
                 .filter(|part| in_one_place || !parts[*part].is_in_one_place())
@@ -342,7 +347,8 @@ fn make_node<'a>(
     (node, inner)
 }
 
-/// The most items of a child of a node over this many: those that fit into nodes less high by one.
+/// The most items in a child of a node over `count` items: as many as fit into a node one level
+/// lower.
 fn child_size(count: usize) -> usize {
     let mut size = FULL;
     while size * Node::WIDTH < count {
@@ -351,7 +357,7 @@ fn child_size(count: usize) -> usize {
     size
 }
 
-/// Shares at most [`FULL`] items out among at most `places` children, each with one to
+/// Distributes at most [`FULL`] items among at most `places` children, each with one to
 /// [`Node::MAX_LEAF`].
 fn share_out<'a>(items: &'a mut [Item], places: usize, weights: Vec3, parts: &mut Vec<Part<'a>>) {
     let count = items.len();
@@ -380,7 +386,7 @@ fn share_out<'a>(items: &'a mut [Item], places: usize, weights: Vec3, parts: &mu
     for at in 1..count {
         bounds = bounds.with(items[at - 1].bounds());
         let cost = bounds.area() * at as f32 + right[at];
-        // As many places as it has items, in proportion, and as both sides need.
+        // Places in proportion to the items, within what both sides need.
         let rest = count - at;
         let least = at.div_ceil(Node::MAX_LEAF);
         let most = (places.saturating_sub(rest.div_ceil(Node::MAX_LEAF))).min(at);
@@ -402,7 +408,7 @@ fn sort_by_middle(items: &mut [Item], axis: usize) {
     let mut copy = [Item::NONE; FULL];
     copy[..count].copy_from_slice(items);
     for (at, (key, item)) in keys.iter_mut().zip(items.iter()).enumerate() {
-        // In the order of the floats, negative ones too.
+        // Integers in the order of the floats, negative ones included.
         let bits = (item.low[axis] + item.high[axis]).to_bits();
         let flip = (bits.cast_signed() >> 31).cast_unsigned() | 1 << 31;
         *key = u64::from(bits ^ flip) << 32 | at as u64;
@@ -413,8 +419,9 @@ fn sort_by_middle(items: &mut [Item], axis: usize) {
     }
 }
 
-/// A place for each child, so that a ray of any octant meets the nearer before the farther: bit k of
-/// a place says that it is on the high side along axis k. The best pair of child and place first.
+/// A place for each child, such that a ray of any octant meets nearer children before farther ones:
+/// bit k of a place says that it is on the high side along axis k. The best pair of child and place
+/// is assigned first.
 fn places(parts: &[Part<'_>], bounds: &Aabb) -> [usize; Node::WIDTH] {
     let middle = bounds.low + bounds.high;
     let offsets = parts
@@ -454,7 +461,7 @@ fn places(parts: &[Part<'_>], bounds: &Aabb) -> [usize; Node::WIDTH] {
     places
 }
 
-/// Sides of a box that ends before it begins, which no ray meets.
+/// The sides of a box whose high side is below its low side: no ray meets it.
 const CLOSED_LOW: Vec3 = Vec3::splat(1e38);
 const CLOSED_HIGH: Vec3 = Vec3::splat(1e-30);
 
@@ -473,13 +480,13 @@ mod tests {
     use spherule_kernel::{Hit, Ray, Rung};
     use std::collections::HashSet;
 
-    struct Grown {
+    struct Built {
         world: World,
         nodes: Nodes,
         order: Vec<u32>,
     }
 
-    impl Grown {
+    impl Built {
         fn over(world: &World) -> Self {
             let tree = build_still(&world.spheres, 1).expect("a tree");
             Self {
@@ -534,8 +541,8 @@ mod tests {
         ]
     }
 
-    /// No hit is lost: tree and brute force name the same distance on every rung whose hits are hits,
-    /// among them the oracle's hard families inside of a world.
+    /// The tree loses no hit: tree and brute force return the same distance on every rung, also for
+    /// the oracle's hard families inside a world.
     #[test]
     fn a_tree_finds_what_testing_every_sphere_finds() {
         for (name, mut world) in worlds() {
@@ -543,8 +550,8 @@ mod tests {
             for (_, sphere) in Family::ALL.iter().flat_map(|f| f.sample(3, 40)) {
                 world.add(sphere, 0);
             }
-            let grown = Grown::over(&world);
-            let levels = Levels::of(grown.nodes.tree());
+            let built = Built::over(&world);
+            let levels = Levels::of(built.nodes.tree());
             let mut random = Random::new(5);
             let mut rays: Vec<Ray> = (0..2000)
                 .map(|i| {
@@ -569,7 +576,7 @@ mod tests {
                 rays.push(Ray::new(center - axis * 20.0, axis));
             }
             let mut hits = 0;
-            let spheres = &grown.world.spheres[..];
+            let spheres = &built.world.spheres[..];
             for rung in Rung::ALL {
                 let mut by_several = [
                     vec![Hit::NONE; rays.len()],
@@ -577,7 +584,7 @@ mod tests {
                     vec![Hit::NONE; rays.len()],
                 ];
                 let [nearest, any, all] = &mut by_several;
-                let in_tree = Single::new(rung, grown.nodes.tree(), levels.as_ref());
+                let in_tree = Single::new(rung, built.nodes.tree(), levels.as_ref());
                 in_tree.trace::<false, _>(&rays, spheres, |index, hit| nearest[index] = hit);
                 in_tree.trace::<true, _>(&rays, spheres, |index, hit| any[index] = hit);
                 let in_none = Single::new(rung, NodeTree::NONE, None);
@@ -592,10 +599,10 @@ mod tests {
                         "{name} {ray:?}"
                     );
                     assert_eq!(by_several[2][index], brute, "{name} {ray:?}");
-                    let found = nearest_hit_in_tree(rung, ray, grown.nodes.tree(), spheres);
+                    let found = nearest_hit_in_tree(rung, ray, built.nodes.tree(), spheres);
                     assert_eq!(found, brute, "{name} {ray:?}");
                     hits += usize::from(found.is_some());
-                    let shadow = is_occluded_in_tree(rung, ray, grown.nodes.tree(), spheres);
+                    let shadow = is_occluded_in_tree(rung, ray, built.nodes.tree(), spheres);
                     assert_eq!(shadow, brute.is_some(), "{name} {rung} {ray:?}");
                 }
             }
@@ -603,7 +610,7 @@ mod tests {
         }
     }
 
-    /// The boxes of a node's children, as the kernel reads them, and their links.
+    /// The boxes of a node's children as the kernel reads them, and their links.
     fn children(node: &Node) -> Vec<(DVec3, DVec3, u32)> {
         let corner = [node.corner.x, node.corner.y, node.corner.z].map(f32::from_bits);
         (0..Node::WIDTH)
@@ -624,12 +631,12 @@ mod tests {
             .collect()
     }
 
-    /// Walks everything below a node: each sphere once, inside of the box that its child has, and each
-    /// node's own boxes, which its parent must enclose as far as the parent's spheres go.
-    fn visit(grown: &Grown, at: usize, depth: usize, seen: &mut [bool], nodes: &mut usize) -> Aabb {
+    /// Walks everything below a node and checks that each sphere appears once, inside the box of
+    /// its child, and that a parent's boxes enclose the spheres of its children.
+    fn visit(built: &Built, at: usize, depth: usize, seen: &mut [bool], nodes: &mut usize) -> Aabb {
         assert!(depth < Node::MAX_DEPTH);
         *nodes += 1;
-        let node = grown.nodes[at];
+        let node = built.nodes[at];
         let mut all = Aabb::EMPTY;
         let mut inner = 0;
         let mut next = node.links.y;
@@ -639,14 +646,14 @@ mod tests {
                 assert_eq!(count, 0);
                 let child = node.links.x as usize + inner;
                 inner += 1;
-                visit(grown, child, depth + 1, seen, nodes)
+                visit(built, child, depth + 1, seen, nodes)
             } else {
                 let mut bounds = Aabb::EMPTY;
                 for index in next..next + count {
                     let index = index as usize;
                     assert!(!seen[index]);
                     seen[index] = true;
-                    bounds = bounds.with(Aabb::of(&grown.world.spheres[index]));
+                    bounds = bounds.with(Aabb::of(&built.world.spheres[index]));
                 }
                 next += count;
                 bounds
@@ -664,15 +671,15 @@ mod tests {
     #[test]
     fn every_sphere_is_in_one_leaf_and_inside_of_its_boxes() {
         for (name, world) in worlds() {
-            let grown = Grown::over(&world);
-            let mut seen = vec![false; grown.order.len()];
+            let built = Built::over(&world);
+            let mut seen = vec![false; built.order.len()];
             let mut nodes = 1;
             let root = Node::ROOT as usize;
-            let _ = visit(&grown, root, 0, &mut seen, &mut nodes);
+            let _ = visit(&built, root, 0, &mut seen, &mut nodes);
             assert!(seen.iter().all(|seen| *seen), "{name}");
-            assert_eq!(nodes, grown.nodes.len(), "{name}");
-            // What is left out is a copy of one that is not, with a higher index.
-            let kept: HashSet<u32> = grown.order.iter().copied().collect();
+            assert_eq!(nodes, built.nodes.len(), "{name}");
+            // Every sphere that was left out is a copy of a kept one with a lower index.
+            let kept: HashSet<u32> = built.order.iter().copied().collect();
             for (index, sphere) in world.spheres.iter().enumerate() {
                 let first = world.spheres.iter().position(|other| other == sphere);
                 assert!(
@@ -680,13 +687,13 @@ mod tests {
                     "{name}"
                 );
             }
-            for (sphere, of) in grown.world.spheres.iter().zip(&grown.order) {
+            for (sphere, of) in built.world.spheres.iter().zip(&built.order) {
                 assert_eq!(*sphere, world.spheres[*of as usize]);
             }
         }
     }
 
-    /// What rays from outside take in a tree over this many spheres, nodes and spheres together.
+    /// The mean work of rays from outside in a tree over `count` spheres: nodes plus spheres.
     fn work_of(count: usize) -> f64 {
         const RAYS: u32 = 4000;
         let mut random = Random::new(5);
@@ -708,15 +715,16 @@ mod tests {
         f64::from(all) / f64::from(RAYS)
     }
 
-    /// A tree whose root has two children, because it is a little too large for one less high, is entered in order, too.
+    /// A tree whose root has only two children, because it is slightly too large for one level
+    /// less, is also walked in order.
     #[test]
     fn a_level_more_costs_little() {
         let (full, loose) = (work_of(120_000), work_of(200_000));
         assert!(loose < 1.08 * full, "{full} and {loose}");
     }
 
-    /// Many equal spheres cost a ray no more than one does, wherever else there are some; moving ones
-    /// are equal only if they move alike.
+    /// Many equal spheres cost a ray no more than one does, also with other spheres around. Moving
+    /// spheres are equal only if they move alike.
     #[test]
     fn of_equal_spheres_the_first_is_kept() {
         let mut random = Random::new(8);

@@ -1,11 +1,11 @@
-//! Building the tree of boxes that the kernel [walks](spherule_kernel::accel::walk).
+//! Builds the tree of boxes that the kernel [walks](spherule_kernel::accel::walk).
 //!
 //! | module | holds |
 //! | --- | --- |
-//! | [`tree`] | [`BuiltTree`]: the nodes and the order of the spheres; [`Acceleration`]: whether there is one |
-//! | [`mod@build`] | from spheres to a tree, on every thread |
+//! | [`tree`] | [`BuiltTree`]: the nodes and the order of the spheres; [`Acceleration`]: whether one is built |
+//! | [`mod@build`] | builds a tree over spheres, on every thread |
 //! | `split` | where a part of the spheres is split in two |
-//! | `aabb`, `quantise` | boxes along the axes, and as a node holds them |
+//! | `aabb`, `quantise` | axis-aligned boxes, and how a node stores them |
 
 mod aabb;
 pub mod build;

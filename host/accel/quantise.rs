@@ -1,19 +1,20 @@
-//! Boxes as a node holds them: quantised, sixteen bits a coordinate, counted from the node's corner.
+//! Boxes as a node stores them: quantised to sixteen bits a side, as distances from the node's
+//! corner.
 
 use glam::Vec3;
 use spherule_kernel::accel::node::Node;
 
 use super::aabb::Aabb;
 
-/// What a node's sides are told from: a little below the corner of smallest coordinates, so that no
-/// distance is zero or so small that it is no normal number.
+/// The corner from which a node's sides are measured: a little below the smallest coordinates, so
+/// that every distance is a normal positive number.
 pub(super) fn corner_of(bounds: &Aabb) -> Vec3 {
     let (low, high) = (bounds.low.truncate(), bounds.high.truncate());
     let below = low - (high - low) * (1.0 / 512.0) - 1e-27;
     Vec3::from_array(below.to_array().map(f32::next_down))
 }
 
-/// How far a box's sides are from the corner, rounded outwards to floats.
+/// The distances of a box's sides from the corner, rounded outwards to floats.
 pub(super) fn sides(bounds: &Aabb, corner: Vec3) -> (Vec3, Vec3) {
     let corner = corner.as_dvec3();
     let low = (bounds.low.truncate().as_dvec3() - corner).as_vec3();
@@ -24,7 +25,7 @@ pub(super) fn sides(bounds: &Aabb, corner: Vec3) -> (Vec3, Vec3) {
     )
 }
 
-/// Puts the sides of the eight boxes, rounded outwards to what a node has room for.
+/// Stores the sides of the eight boxes in a node, rounded outwards to sixteen bits.
 pub(super) fn put_sides(boxes: &[(Vec3, Vec3); Node::WIDTH], node: &mut Node) {
     const LAST: usize = Node::WIDTH / 2;
     for axis in 0..3 {
@@ -33,7 +34,7 @@ pub(super) fn put_sides(boxes: &[(Vec3, Vec3); Node::WIDTH], node: &mut Node) {
             // Positive floats are in the order of their bits.
             let low = first.0[axis].to_bits() >> 16;
             let high = first.1[axis].to_bits().div_ceil(1 << 16);
-            // The word as a whole is the other's: at most its low side, at least its high side.
+            // The upper box's side is the whole word: at most its low side, at least its high side.
             let low = (last.0[axis].to_bits().saturating_sub(low) >> 16) << 16 | low;
             let high = (last.1[axis].to_bits().saturating_sub(high)).div_ceil(1 << 16) << 16 | high;
             node.sides[axis][word] = low;

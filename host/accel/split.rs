@@ -1,5 +1,6 @@
-//! Splits a part of the spheres in two where a ray pays least for it: the surface area heuristic over bins (I. Wald, On fast
-//! Construction of SAH-based Bounding Volume Hierarchies, RT 2007).
+//! Splits a part of the spheres in two where a ray's expected cost is lowest: the surface area
+//! heuristic over bins (I. Wald, On fast Construction of SAH-based Bounding Volume Hierarchies, RT
+//! 2007).
 
 use std::array;
 
@@ -10,7 +11,7 @@ use spherule_kernel::accel::node::Node;
 use super::aabb::{Aabb, Item};
 use crate::scene::world::GRAIN;
 
-/// Bins along an axis, for many spheres and for few.
+/// Bins along an axis, for [`FEW`] spheres or more.
 const BINS: usize = 16;
 
 const FEW_BINS: usize = 8;
@@ -20,18 +21,20 @@ const FEW: usize = 256;
 /// From this many spheres on, threads share the work on one node.
 pub(super) const SHARED: usize = 1 << 16;
 
-/// Beyond this depth nodes are halved, whatever that costs a ray: 8¹² is more than there can be.
+/// Beyond this depth nodes are halved, whatever that costs a ray: 8¹² exceeds the possible number
+/// of spheres.
 const HALVING_DEPTH: usize = Node::MAX_DEPTH - 12;
 
-/// A child of a node: which items, and their box.
+/// A child of a node: its items and their box.
 pub(super) struct Part<'a> {
     pub(super) items: &'a mut [Item],
-    /// Room for as many items, where threads share the work on them.
+    /// Room for as many items, if threads share the work on them.
     pub(super) scratch: &'a mut [Item],
     pub(super) bounds: Aabb,
-    /// The box of twice their middles, of a part that may be split.
+    /// The box around twice the middles, for a part that may be split.
     pub(super) middles: Aabb,
-    /// What an axis counts for when the next split's is chosen: less, once the node was split along it.
+    /// The weight of each axis when the next split's axis is chosen. It is lowered once the node is
+    /// split along the axis.
     pub(super) weights: Vec3,
 }
 
@@ -40,7 +43,7 @@ pub(super) fn widest_axis(items: &[Item], weights: Vec3) -> usize {
     ((middles.high - middles.low).truncate() * weights).max_position()
 }
 
-/// Splits a part in two, neither of them empty, where a ray pays least for it.
+/// Splits a part into two non-empty parts where a ray's expected cost is lowest.
 pub(super) fn split(part: Part<'_>, depth: usize) -> (Part<'_>, Part<'_>) {
     let Part {
         items,
@@ -62,12 +65,12 @@ pub(super) fn split(part: Part<'_>, depth: usize) -> (Part<'_>, Part<'_>) {
             return halves(items, scratch, best.left.count, sides, weights);
         }
     }
-    // All in one place, or as deep as may be.
+    // All middles are in one place, or the tree is at its depth limit.
     let middle = items.len() / 2;
     let axis = widest_axis(items, weights);
     items.select_nth_unstable_by(middle, |a, b| {
         let order = a.middle()[axis].total_cmp(&b.middle()[axis]);
-        // Of spheres around one middle, the smaller together.
+        // Among spheres around one middle, the smaller ones go together.
         let order = order.then(a.high[axis].total_cmp(&b.high[axis]));
         order.then(a.index().cmp(&b.index()))
     });
@@ -76,7 +79,8 @@ pub(super) fn split(part: Part<'_>, depth: usize) -> (Part<'_>, Part<'_>) {
     halves(items, scratch, middle, sides, weights)
 }
 
-/// The two parts of items that are sorted so, with their boxes and those of twice their middles.
+/// The two parts of items that are already sorted, with the boxes around them and around twice
+/// their middles.
 fn halves<'a>(
     items: &'a mut [Item],
     scratch: &'a mut [Item],
@@ -99,14 +103,15 @@ fn halves<'a>(
     )
 }
 
-/// Octants tell the order of children that lie on one side or the other along each axis, not of four in a row. So an axis that
-/// a node was split along is split again only where the middles are much farther apart along it.
+/// Lowers the weight of an axis that a node was split along. Octants give the order of two children
+/// along an axis, not of four in a row; so an axis is split again only if the middles are much
+/// farther apart along it.
 pub(super) fn split_along(mut weights: Vec3, axis: usize) -> Vec3 {
     weights[axis] *= 0.4;
     weights
 }
 
-/// Where the middles of items fall: the same arithmetic for all that ask.
+/// Maps the middles of items to bins, with the same arithmetic for every caller.
 #[derive(Clone, Copy)]
 struct Places {
     axis: usize,
@@ -121,18 +126,19 @@ impl Places {
     }
 }
 
-/// A split, and what it makes.
+/// A split and its two sides.
 struct Split {
     places: Places,
     bin: usize,
     left: Bin,
     right: Bin,
-    /// How many go to the left of each [`GRAIN`] items, where threads share the work.
+    /// If threads share the work: of each [`GRAIN`] items, how many go to the left.
     of_chunks: Vec<usize>,
 }
 
 impl Split {
-    /// Puts the items of the left side first, in `items` or, by many threads, in `scratch`. Returns where they are, and the other.
+    /// Puts the items of the left side first, in `items`, or in `scratch` if threads share the
+    /// work. Returns the sorted slice, then the other one.
     fn partition<'a>(
         &self,
         items: &'a mut [Item],
@@ -149,7 +155,7 @@ impl Split {
     }
 }
 
-/// Puts the items of the left side first. Without branches, which no processor could foretell.
+/// Puts the items of the left side first, without branches, which no processor could predict.
 fn partition(items: &mut [Item], is_left: impl Fn(&Item) -> bool) {
     let mut count = 0;
     for at in 0..items.len() {
@@ -159,7 +165,8 @@ fn partition(items: &mut [Item], is_left: impl Fn(&Item) -> bool) {
     }
 }
 
-/// Sorts `items` into `sorted`, those of the left side first, of which every [`GRAIN`] have so many; by many threads.
+/// Sorts `items` into `sorted` on many threads, the left side first. `of_chunks` says how many of
+/// each [`GRAIN`] items go to the left.
 fn partition_shared(
     items: &[Item],
     sorted: &mut [Item],
@@ -187,11 +194,11 @@ fn partition_shared(
         });
 }
 
-/// What fell into a bin.
+/// The items of a bin.
 #[derive(Clone, Copy)]
 struct Bin {
     bounds: Aabb,
-    /// The box of twice the middles.
+    /// The box around twice the middles.
     middles: Aabb,
     count: usize,
 }
@@ -227,8 +234,8 @@ fn bins_of<const N: usize>(items: &[Item], places: &Places) -> [Bin; N] {
     bins
 }
 
-/// The cheapest split between bins along the axis on which the middles are farthest apart; `None` if all are in
-/// one place.
+/// The cheapest split between bins along the axis on which the weighted extent of the middles is
+/// largest; `None` if all middles are in one place.
 fn best_split<const N: usize>(items: &[Item], middles: Aabb, weights: Vec3) -> Option<Split> {
     let width = (middles.high - middles.low).truncate();
     let axis = (width * weights).max_position();

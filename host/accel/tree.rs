@@ -1,4 +1,4 @@
-//! [`BuiltTree`]: a tree as the host keeps it, and whether one is built.
+//! [`BuiltTree`]: a tree as the host keeps it; [`Acceleration`]: whether one is built.
 
 use std::ops::Deref;
 
@@ -8,18 +8,18 @@ use spherule_kernel::accel::node::{Node, Tree as NodeTree};
 
 use crate::scene::world::{GRAIN, World};
 
-/// From how many spheres on a tree pays, for single rays on the CPU: 8 with AVX-512; camera rays by
-/// squares and rays on a GPU have thresholds of their own.
+/// The fewest spheres for which a tree pays, for single rays on the CPU; with AVX-512 it is 8.
+/// Squares of camera rays and rays on a GPU have thresholds of their own.
 pub const MIN_SPHERES: usize = 12;
 
-/// What a sphere takes at most while a tree is grown and a world is sorted by it: two items, its shares of the nodes of a thread and of the
-/// whole, and its copy.
+/// The most bytes that a sphere takes while a tree is built and a world is sorted by it: two items,
+/// its shares of one thread's nodes and of all nodes, and its copy.
 pub const BYTES_A_SPHERE: u64 = 256;
 
 /// Whether a tree is built.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Acceleration {
-    /// Where there are enough spheres for one to pay.
+    /// If there are enough spheres for a tree to pay.
     #[default]
     Auto,
     /// Always.
@@ -29,7 +29,7 @@ pub enum Acceleration {
 }
 
 impl Acceleration {
-    /// The fewest spheres that get a tree, where one pays from `measured` on.
+    /// The fewest spheres that get a tree; `measured` is the number from which one pays.
     #[must_use]
     pub fn min_spheres(self, measured: usize) -> usize {
         match self {
@@ -40,16 +40,16 @@ impl Acceleration {
     }
 }
 
-/// The nodes of a tree that was grown here, the first of them an [`Extent`]; or none.
+/// The nodes of a tree that this module built, the first of them an [`Extent`]; or no nodes.
 #[derive(Clone, Debug, Default)]
 pub struct Nodes(pub(super) Vec<Node>);
 
 impl Nodes {
-    /// As walks take them.
+    /// The nodes as walks use them.
     #[inline]
     #[must_use]
     pub fn tree(&self) -> NodeTree<'_> {
-        // SAFETY: there are none, or `build` made them.
+        // SAFETY: there are no nodes, or `build` made them.
         unsafe { NodeTree::of_unchecked(&self.0) }
     }
 }
@@ -67,14 +67,15 @@ impl Deref for Nodes {
 pub struct BuiltTree {
     /// The nodes.
     pub nodes: Nodes,
-    /// The spheres in the order of the leaves, by their indices. The nodes name them by their places
-    /// in here. Of many equal spheres in one place the first alone is among them: no ray finds
+    /// The indices of the spheres in the order of the leaves; nodes refer to spheres by their
+    /// positions in it. Of many equal spheres in one place only the first is included: no ray finds
     /// another.
     pub order: Vec<u32>,
 }
 
 impl BuiltTree {
-    /// What belongs to each sphere, in the order of the leaves; zeros for spheres beyond the end of `values`.
+    /// The value of each sphere, in the order of the leaves; zeros for spheres beyond the end of
+    /// `values`.
     #[must_use]
     pub fn sort<T: Zeroable + Copy + Send + Sync>(&self, values: &[T]) -> Vec<T> {
         let of = |index: &u32| values.get(*index as usize).copied();

@@ -1,4 +1,4 @@
-//! The proof that this machine has AVX-512, and sixteen spheres against one ray.
+//! The proof that this machine has AVX-512, and culling of sixteen spheres for one ray.
 
 use std::arch::x86_64::*;
 
@@ -11,7 +11,8 @@ use spherule_kernel::cull::discriminant::{SLACK, SMALLEST};
 use crate::cpu::InstructionSet;
 pub(super) use crate::lanes::LANES;
 
-/// The proof that this machine has AVX-512 and what comes with it, and that it is to be used.
+/// The proof that this machine has AVX-512 and the extensions that come with it, and that they are
+/// to be used.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Avx512(pub(super) x86::Avx512);
 
@@ -24,14 +25,16 @@ impl Avx512 {
     }
 }
 
-/// Which of up to sixteen spheres a line may hit, given by its origin, its direction and that one's square, a bit each.
+/// Which of up to sixteen spheres a line may hit, a bit each. `a` is the squared length of
+/// `direction`.
 ///
-/// As [`Line::may_hit`]; and if `bounded` by a line and its end, as the line counts it, on rungs from robust up, not those
-/// that are behind by [`Line::bounds`], nor those that lie beyond the end: no point of a sphere is nearer than o·d/a − r/|d|, |d| is at least
-/// one, and what the middle is off by is less than what bounds allow for.
+/// The test is [`Line::may_hit`]. With `bounded`, a line and its end in the line's units, spheres
+/// that are behind the ray by [`Line::bounds`] are culled too, and so are those beyond the end;
+/// this is for rungs from robust up. No point of a sphere is nearer than o·d/a − r/|d|, |d| is at
+/// least one, and the error of o·d/a is less than what the bounds allow for.
 #[inline]
 #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
-pub(super) fn sift(
+pub(super) fn cull(
     origin: Vec3,
     direction: Vec3,
     a: f32,
@@ -39,7 +42,7 @@ pub(super) fn sift(
     spheres: &[Sphere],
 ) -> u32 {
     let count = spheres.len().min(LANES);
-    // Four floats a sphere; what is not there is zero, and masked out.
+    // Four floats a sphere. Missing spheres are zero, and masked out.
     let there = _bzhi_u64(u64::MAX, 4 * count as u32);
     let four = |at: usize| {
         let mask = (there >> (16 * at)) as __mmask16;
@@ -72,7 +75,7 @@ pub(super) fn sift(
     let b = dot(x, y, z, splat(d.x), splat(d.y), splat(d.z));
     let c = _mm512_fnmadd_ps(splat(SLACK), _mm512_add_ps(oo, rr), _mm512_sub_ps(oo, rr));
     let discriminant = _mm512_fmsub_ps(b, b, _mm512_mul_ps(splat(a), c));
-    // A number that is none is asked about, too.
+    // NaN counts as a possible hit.
     let mut found = _mm512_cmp_ps_mask::<_CMP_NLT_UQ>(discriminant, splat(SMALLEST));
     if let Some((line, end)) = bounded {
         let r = _mm512_abs_ps(r);

@@ -1,4 +1,4 @@
-//! The boxes of a node with AVX2.
+//! The tests of a node's boxes with AVX2.
 
 use std::arch::x86_64::*;
 
@@ -11,7 +11,7 @@ use super::search::{Resting, Search};
 use super::wide::Wide;
 use crate::cpu::InstructionSet;
 
-/// The proof that this machine has AVX2 and what comes with it.
+/// The proof that this machine has AVX2 and the extensions that come with it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Avx2(());
 
@@ -66,16 +66,16 @@ impl Wide for Avx2 {
     }
 }
 
-/// What stays the same of a ray from node to node.
+/// The part of a ray that stays the same from node to node.
 pub(super) struct Planes {
-    /// One over the direction, and what is added at near and far planes.
+    /// One over the direction, and the offsets of near and far planes.
     inverse: __m128,
     near: __m128,
     far: __m128,
-    /// Which of a node's rows of sides are near ones, and which are far.
+    /// Which of a node's rows of sides are near planes, and which are far.
     near_rows: [usize; 3],
     far_rows: [usize; 3],
-    /// The end of the ray.
+    /// The end of the ray, as [`Slabs::widened_end`] returns it.
     end: f32,
 }
 
@@ -124,7 +124,7 @@ impl Planes {
     }
 }
 
-/// Keys of the boxes that are met, the largest first, and behind them negative ones.
+/// The keys of the boxes that are met, the largest first; then negative ones.
 #[inline]
 #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
 fn keys(met: u32, near: __m256) -> __m256i {

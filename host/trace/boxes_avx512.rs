@@ -1,4 +1,4 @@
-//! The boxes of a node side by side, with AVX-512.
+//! The tests of a node's boxes with AVX-512.
 
 use std::arch::x86_64::*;
 
@@ -53,19 +53,20 @@ impl Wide for Avx512 {
     }
 }
 
-/// What stays the same of a ray from node to node. Of each four lanes of a vector the first and the third are of near
-/// planes, the others of far ones, whose parameters are negated: so the latest entry and the earliest exit are both a largest one.
+/// The part of a ray that stays the same from node to node. In each vector, the first and the third
+/// four lanes are for near planes. The others are for far planes, with parameters negated, so that
+/// the latest entry and the earliest exit are both a maximum.
 pub(super) struct Planes {
     /// One over the direction.
     inverse: [__m512; 3],
-    /// What is added.
+    /// The offsets of the planes.
     first: [__m512; 3],
     start_and_end: __m512,
-    /// Which of a node's rows of sides are near ones.
+    /// Which of a node's rows of sides are near planes.
     near_rows: [usize; 3],
 }
 
-/// As the lanes of [`Planes`].
+/// A vector with the lanes of [`Planes`].
 #[inline]
 #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
 fn near_and_far(near: f32, far: f32) -> __m512 {
@@ -111,7 +112,7 @@ impl Planes {
         };
         let last = _mm512_max_ps(planes(2), self.start_and_end);
         let last = _mm512_max_ps(_mm512_max_ps(planes(0), planes(1)), last);
-        // Each of a near plane's lanes is met by that of the far one.
+        // Each lane of a near plane is paired with that of its far plane.
         let others = _mm512_shuffle_f32x4::<0b10_11_00_01>(last, last);
         let gap = _mm512_add_ps(last, others);
         let met = _mm512_cmp_ps_mask::<_CMP_LE_OQ>(gap, _mm512_setzero_ps());
@@ -124,10 +125,10 @@ impl Planes {
     }
 }
 
-/// Lanes of far planes.
+/// The lanes of far planes.
 const FAR: __mmask16 = 0xf0f0;
 
-/// Keys of the boxes that are met.
+/// The keys of the boxes that are met, the largest first; then negative ones.
 #[inline]
 #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
 fn keys(met: u32, near: __m256) -> __m256i {

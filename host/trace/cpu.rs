@@ -18,12 +18,12 @@ pub struct CpuTracer {
     spheres: Vec<Sphere>,
     nodes: Nodes,
     levels: Option<Levels>,
-    /// For each sphere, its index as it was given; empty without a tree.
+    /// For each sphere in the order of the leaves, its index in the input; empty without a tree.
     order: Vec<u32>,
 }
 
 impl CpuTracer {
-    /// Grows the tree.
+    /// Builds the tree.
     #[must_use]
     pub fn new(spheres: &[Sphere], acceleration: Acceleration) -> Self {
         match accel::build_still(spheres, acceleration.min_spheres(MIN_SPHERES)) {
@@ -42,33 +42,34 @@ impl CpuTracer {
         }
     }
 
-    /// The memory that tracing takes, in bytes.
+    /// The memory that spheres, nodes and levels take, in bytes.
     #[must_use]
     pub fn bytes(&self) -> usize {
         let levels = self.levels.as_ref().map_or(0, Levels::bytes);
         size_of_val(&self.spheres[..]) + size_of_val(&self.nodes[..]) + levels
     }
 
-    /// What traces rays on this rung.
+    /// Traces rays on this rung.
     #[must_use]
     fn single(&self, rung: Rung) -> Single<'_> {
         Single::new(rung, self.nodes.tree(), self.levels.as_ref())
     }
 
-    /// The tree; none without one.
+    /// The tree; without nodes if none was built.
     #[must_use]
     pub fn tree(&self) -> Tree<'_> {
         self.nodes.tree()
     }
 
-    /// For each sphere in the order of the tree's leaves, its index as it was given; none without a tree.
+    /// For each sphere in the order of the tree's leaves, its index in the input; empty without a
+    /// tree.
     #[must_use]
     pub fn order(&self) -> &[u32] {
         &self.order
     }
 
-    /// Finds the nearest hit of each ray; spheres by their indices as they were given. `hits` gets as
-    /// long as `rays`.
+    /// Finds the nearest hit of each ray, with the sphere's index in the input. `hits` is resized
+    /// to the length of `rays`.
     pub fn nearest(&self, rung: Rung, rays: &[Ray], hits: &mut Vec<Hit>) {
         hits.resize(rays.len(), Hit::NONE);
         let single = self.single(rung);
@@ -85,7 +86,7 @@ impl CpuTracer {
             });
     }
 
-    /// Whether each ray hits anything, 1 or 0. `occluded` gets as long as `rays`.
+    /// Finds whether each ray hits anything: 1 or 0. `occluded` is resized to the length of `rays`.
     pub fn occluded(&self, rung: Rung, rays: &[Ray], occluded: &mut Vec<u32>) {
         occluded.resize(rays.len(), 0);
         let single = self.single(rung);
@@ -100,7 +101,8 @@ impl CpuTracer {
             });
     }
 
-    /// What the rays take in the tree, all together; `None` without one.
+    /// How many nodes and how many spheres all rays together test in the tree; `None` without a
+    /// tree. With `any`, each ray stops at its first hit.
     #[must_use]
     pub fn work(&self, rung: Rung, any: bool, rays: &[Ray]) -> Option<(u64, u64)> {
         if self.nodes.is_empty() {

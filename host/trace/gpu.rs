@@ -10,7 +10,7 @@ use crate::device::{Access, Buffer, Gpu, Kernel};
 use crate::error::Result;
 use crate::kernel_module;
 
-/// From how many spheres on a tree pays for single rays on a GPU.
+/// The fewest spheres for which a tree pays, for single rays on a GPU.
 const MIN_SPHERES: usize = 16;
 
 /// Spheres on a GPU, and the tree over them if one pays.
@@ -20,11 +20,11 @@ pub struct GpuTracer<'a> {
     spheres: Buffer<Sphere>,
     /// `None` without a tree.
     nodes: Option<Buffer<Node>>,
-    /// For each sphere, its index as it was given; empty without a tree.
+    /// For each sphere in the order of the leaves, its index in the input; empty without a tree.
     order: Vec<u32>,
 }
 
-/// Rays on a GPU, and room for what is asked of them.
+/// Rays on a GPU, and buffers for their results.
 #[derive(Debug)]
 pub struct Batch {
     rays: Buffer<Ray>,
@@ -33,7 +33,7 @@ pub struct Batch {
 }
 
 impl<'a> GpuTracer<'a> {
-    /// Grows the tree, and uploads it.
+    /// Builds the tree and uploads it.
     ///
     /// # Errors
     ///
@@ -57,7 +57,7 @@ impl<'a> GpuTracer<'a> {
         )
     }
 
-    /// The memory that tracing takes, in bytes.
+    /// The memory that spheres and nodes take, in bytes.
     #[must_use]
     pub fn bytes(&self) -> usize {
         let nodes = self.nodes.as_ref().map_or(0, Buffer::len);
@@ -77,7 +77,8 @@ impl<'a> GpuTracer<'a> {
         })
     }
 
-    /// Finds the nearest hit of each ray, and how long it took on the device if that can be told.
+    /// Finds the nearest hit of each ray. Returns the time on the device, or on the host if the
+    /// device cannot measure it.
     ///
     /// # Errors
     ///
@@ -87,7 +88,7 @@ impl<'a> GpuTracer<'a> {
         self.launch(rung, names, batch, batch.hits.binding())
     }
 
-    /// Finds whether each ray hits anything.
+    /// Finds whether each ray hits anything. Returns the time as [`GpuTracer::nearest`] does.
     ///
     /// # Errors
     ///
@@ -97,8 +98,9 @@ impl<'a> GpuTracer<'a> {
         self.launch(rung, names, batch, batch.occluded.binding())
     }
 
-    /// Keeps the device busy for some hundredths of a second on end: one that waits for the host now and
-    /// then runs at a fraction of its clock. Nothing on a software adapter. Overwrites what was found.
+    /// Keeps the device busy for a few hundredths of a second without a pause: a device that often
+    /// waits for the host runs at a fraction of its clock. Does nothing on a software adapter.
+    /// Overwrites the hits.
     ///
     /// # Errors
     ///
@@ -126,7 +128,7 @@ impl<'a> GpuTracer<'a> {
         Ok(())
     }
 
-    /// What [`GpuTracer::nearest`] found; spheres by their indices as they were given.
+    /// The hits that [`GpuTracer::nearest`] found, with the spheres' indices in the input.
     ///
     /// # Errors
     ///
@@ -135,7 +137,7 @@ impl<'a> GpuTracer<'a> {
         let mut hits = self.gpu.read(&batch.hits)?;
         if !self.order.is_empty() {
             for hit in hits.iter_mut().filter(|hit| hit.is_some()) {
-                // Another tracer's batch names spheres that are not here.
+                // A batch of another tracer may name spheres that are not here.
                 let sphere = self.order.get(hit.sphere as usize).copied();
                 hit.sphere = sphere.unwrap_or(Hit::NONE_SPHERE);
             }
@@ -143,7 +145,7 @@ impl<'a> GpuTracer<'a> {
         Ok(hits)
     }
 
-    /// What [`GpuTracer::occluded`] found, 1 or 0.
+    /// What [`GpuTracer::occluded`] found: 1 or 0 for each ray.
     ///
     /// # Errors
     ///

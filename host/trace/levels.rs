@@ -1,18 +1,19 @@
-//! [`Levels`]: a tree whose boxes hold sixteen boxes each, level upon level, so that a vector of sixteen numbers is all boxes
-//! of one.
+//! [`Levels`]: a tree whose boxes hold sixteen boxes each, level upon level, so that one vector of
+//! sixteen numbers covers all boxes in a box.
 //!
-//! The boxes at the bottom are those of the tree it is made from, each around sixteen spheres at most, in that tree's order;
-//! sixteen that follow each other make a box of the level above. That way no box need say where its own are: box i of a
-//! level holds the boxes 16 i to 16 i + 15 of the next.
+//! The boxes at the bottom are those of the tree that it is made from, each around at most sixteen
+//! spheres, in that tree's order. Sixteen consecutive boxes make a box of the level above. So no
+//! links are stored: box i of a level holds the boxes 16 i to 16 i + 15 of the next.
 
 use glam::Vec3;
 use spherule_kernel::accel::node::{Node, Tree};
 
-/// Boxes in a box, and spheres in one at the bottom.
+/// Boxes in a box, and the most spheres in a box at the bottom.
 pub(super) const WIDTH: usize = 16;
-/// The most groups of boxes on top.
+/// The most groups of boxes on the top level.
 const MAX_TOP: usize = 4;
-/// The most levels: of some 200 000 spheres. Of more, a ray spends more time on what is behind its nearest hit.
+/// The most levels: enough for some 200 000 spheres. With more spheres, a ray would spend more time
+/// on boxes behind its nearest hit.
 const MAX_LEVELS: usize = 3;
 
 /// The most boxes at the bottom.
@@ -22,32 +23,33 @@ const _: () = assert!(MAX_BOXES <= 1 << Levels::INDEX_BITS);
 /// Boxes around the spheres of a tree.
 #[derive(Clone, Debug)]
 pub struct Levels {
-    /// From the top down; there is one at least.
+    /// From the top down; at least one.
     pub(super) groups: Vec<Vec<Group>>,
-    /// Of each box at the bottom the first sphere, and how many there are.
+    /// For each box at the bottom, its first sphere and how many it has.
     pub(super) spheres: Vec<(u32, u32)>,
-    /// How many spheres there are in all boxes.
+    /// The number of spheres in all boxes.
     pub(super) sphere_count: usize,
 }
 
-/// The sides of sixteen boxes: the smallest x, y, z, then the largest. A box that is none ends before it begins, so that no ray
-/// whose numbers are not beyond [`is_plain`](super::sixteen::is_plain) meets it.
+/// The sides of sixteen boxes: the smallest x, y, z, then the largest. Unused boxes end before they
+/// begin, so that no [plain](super::sixteen::is_plain) ray meets them.
 #[derive(Clone, Debug)]
 #[repr(align(64))]
 pub(super) struct Group(pub(super) [[f32; WIDTH]; 6]);
 
 impl Levels {
-    /// A box's number has as many bits.
+    /// The bits of a box's index.
     pub(super) const INDEX_BITS: u32 = 16;
 
-    /// Of a tree; `None` without one, or of one that is too large, or if this machine has no instructions to use them.
+    /// The levels of a tree; `None` without nodes, if the tree is too large, or if this machine
+    /// lacks AVX-512.
     #[must_use]
     pub fn of(tree: Tree<'_>) -> Option<Self> {
         let nodes = tree.nodes();
         if nodes.len() <= Node::ROOT as usize || !is_usable() {
             return None;
         }
-        // Nodes branch: half of them at least are at the bottom.
+        // Nodes branch, so at least half of them are at the bottom.
         if nodes.len() > 2 * MAX_BOXES {
             return None;
         }
@@ -72,7 +74,7 @@ impl Levels {
         })
     }
 
-    /// The memory that they take, in bytes.
+    /// The memory that the levels take, in bytes.
     #[must_use]
     pub fn bytes(&self) -> usize {
         let groups = self.groups.iter().map(|groups| size_of_val(&groups[..]));
@@ -87,15 +89,15 @@ fn is_usable() -> bool {
     return false;
 }
 
-/// A box, and the spheres in it if it is at the bottom.
-struct Bottom {
+/// A box, and its spheres if it is at the bottom.
+struct LevelBox {
     low: Vec3,
     high: Vec3,
     spheres: (u32, u32),
 }
 
-fn groups(boxes: &[Bottom]) -> Vec<Group> {
-    let group = |some: &[Bottom]| {
+fn groups(boxes: &[LevelBox]) -> Vec<Group> {
+    let group = |some: &[LevelBox]| {
         let beyond = Node::MAX_COORDINATE;
         let none = |side| [if side < 3 { beyond } else { -beyond }; WIDTH];
         let mut sides = [0, 1, 2, 3, 4, 5].map(none);
@@ -110,22 +112,22 @@ fn groups(boxes: &[Bottom]) -> Vec<Group> {
     boxes.chunks(WIDTH).map(group).collect()
 }
 
-/// What is around boxes.
-fn around(boxes: &[Bottom]) -> Bottom {
-    let none = Bottom {
+/// The box around boxes.
+fn around(boxes: &[LevelBox]) -> LevelBox {
+    let none = LevelBox {
         low: Vec3::MAX,
         high: Vec3::MIN,
         spheres: (0, 0),
     };
-    boxes.iter().fold(none, |all, of| Bottom {
+    boxes.iter().fold(none, |all, of| LevelBox {
         low: all.low.min(of.low),
         high: all.high.max(of.high),
         ..all
     })
 }
 
-/// Adds what is at the bottom below a node.
-fn collect(nodes: &[Node], at: u32, boxes: &mut Vec<Bottom>) {
+/// Appends the boxes at the bottom that are below a node.
+fn collect(nodes: &[Node], at: u32, boxes: &mut Vec<LevelBox>) {
     let node = &nodes[at as usize];
     let corner = [node.corner.x, node.corner.y, node.corner.z].map(f32::from_bits);
     let corner = Vec3::from_array(corner);
@@ -149,14 +151,14 @@ fn collect(nodes: &[Node], at: u32, boxes: &mut Vec<Bottom>) {
             continue;
         }
         let (low, high) = (down(low(child)), up(high(child)));
-        // Spheres of neighbours follow each other.
+        // The spheres of neighbours are consecutive.
         match boxes[first_here..].last_mut() {
             Some(last) if !node.has_nodes() && last.spheres.1 + count <= WIDTH as u32 => {
                 last.low = last.low.min(low);
                 last.high = last.high.max(high);
                 last.spheres.1 += count;
             }
-            _ => boxes.push(Bottom {
+            _ => boxes.push(LevelBox {
                 low,
                 high,
                 spheres: (first, count),

@@ -1,15 +1,15 @@
-//! Rays by the million: what they hit, and whether they hit anything, without an image.
+//! Traces rays by the million without an image: what each ray hits, or whether it hits anything.
 //!
 //! | module | holds |
 //! | --- | --- |
 //! | [`cpu`] | [`CpuTracer`]: on every thread of this machine |
 //! | [`gpu`] | [`GpuTracer`]: on a GPU |
-//! | `single` | rays one by one on the CPU: which of the ways below they take |
-//! | `search` | a ray on its way among spheres, four of them side by side |
-//! | `walk`, `wide` | rays through a tree, the eight boxes of a node side by side |
-//! | `boxes_avx2`, `boxes_avx512` | those boxes with AVX2, and with AVX-512 |
+//! | `single` | rays on the CPU: chooses among the ways below |
+//! | `search` | one ray's search among spheres, four spheres at a time |
+//! | `walk`, `wide` | rays through a tree, all eight boxes of a node at once |
+//! | `boxes_avx2`, `boxes_avx512` | the tests of those boxes with AVX2 and with AVX-512 |
 //! | `levels`, `stream`, `sixteen` | boxes of sixteen boxes, and sixteen rays that go through them together, with AVX-512 |
-//! | `avx512` | the proof that this machine has AVX-512, and sixteen spheres against one ray |
+//! | `avx512` | the proof that this machine has AVX-512, and culling of sixteen spheres for one ray |
 
 #[cfg(target_arch = "x86_64")]
 mod avx512;

@@ -1,7 +1,8 @@
-//! [`Search`]: a ray on its way among spheres, and [`Query`]: what is asked of every ray.
+//! [`Search`]: one ray's search among spheres; [`Query`]: what all rays have in common.
 //!
-//! Four spheres at a time are culled by the [discriminant](spherule_kernel::cull::discriminant), whose slack covers every rung,
-//! and only what may be a hit is asked about on its rung; of the rungs that take long, only the nearest at the end, and what
+//! Four spheres at a time are culled by the [discriminant](spherule_kernel::cull::discriminant),
+//! whose slack covers every rung. The rung is evaluated only for possible hits. Slow rungs are
+//! evaluated only for the nearest sphere at the end, and for those that
 //! [`bounds`](spherule_kernel::cull::bounds) leave open.
 
 use glam::{Mat4, Vec4};
@@ -17,27 +18,27 @@ use spherule_kernel::{Effects, Hit, Ray, Rung, Sphere};
 use super::avx512::{self, Avx512};
 use crate::lanes::Four;
 
-/// Spheres side by side.
+/// Spheres that are culled at a time.
 const LANES: usize = 4;
 
-/// What is asked of every ray: the rung's question, of the spheres of a tree or of all.
+/// What all rays have in common: the rung's formula, and the tree if there is one.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Query<'a> {
     /// The rung.
     pub(super) rung: Rung,
-    /// The rung's question.
+    /// The rung's formula.
     intersect: fn(Sphere, &Ray) -> f32,
-    /// The tree; none if every sphere is to be tested.
+    /// The tree; without nodes if every sphere is to be tested.
     pub(super) tree: Tree<'a>,
-    /// What its first node says.
+    /// The extent in the tree's first node.
     pub(super) extent: Extent,
 }
 
 impl<'a> Query<'a> {
     pub(super) fn new(rung: Rung, tree: Tree<'a>) -> Self {
-        /// The rung's question, compiled for it.
-        struct Question;
-        impl OnRung for Question {
+        /// The rung's formula, compiled for it.
+        struct Formula;
+        impl OnRung for Formula {
             type Output = fn(Sphere, &Ray) -> f32;
 
             fn run<const RUNG: u32>(self) -> Self::Output {
@@ -49,22 +50,22 @@ impl<'a> Query<'a> {
         }
         Self {
             rung,
-            intersect: rung.with(Question),
+            intersect: rung.with(Formula),
             tree,
             extent: Extent::of_node(tree.nodes().first().unwrap_or(&Node::default())),
         }
     }
 
-    /// A ray that has not met anything yet.
+    /// Starts the search of a ray.
     #[inline(always)]
     pub(super) fn search(&self, ray: &Ray) -> Search {
         Search::of(self.rung, self.intersect, ray)
     }
 }
 
-/// Spheres that may lie side by side in memory.
+/// Spheres that may be contiguous in memory.
 pub trait Resting: Spheres {
-    /// All of them, where [`Spheres::sphere`] has them; none if they move.
+    /// All spheres as [`Spheres::sphere`] returns them; `None` if they move.
     fn at_rest(&self) -> Option<&[Sphere]>;
 }
 
@@ -83,25 +84,26 @@ impl Resting for MovingSpheres<'_> {
     }
 }
 
-/// A ray on its way among spheres.
+/// A ray's search among spheres.
 #[derive(Clone, Copy)]
 pub(super) struct Search {
     intersect: fn(Sphere, &Ray) -> f32,
-    /// Whether the rung takes so long that it is asked at the end, as in the kernel's walk.
+    /// Whether the rung is slow and is evaluated at the end, as in the kernel's walk.
     is_lazy: bool,
     is_robust: bool,
-    /// Whether hits of the rung are where [`bounds`](spherule_kernel::cull::bounds) have them.
+    /// Whether the rung's hits lie within [`bounds`](spherule_kernel::cull::bounds).
     is_bounded: bool,
-    /// Ends where a sphere could still be of interest.
+    /// The ray. Its end is lowered to where a sphere could still be nearer.
     pub(super) ray: Ray,
-    /// Where the ray ends by itself.
+    /// The ray's own end.
     end: f32,
     line: Line,
-    /// What was found. While there is an `unasked` sphere, `t` is where it is hit at most.
+    /// The nearest hit so far. While there is a `deferred` sphere, `t` is an upper bound.
     pub(super) hit: Hit,
-    /// The sphere that was found, if the rung was not asked about it.
-    unasked: Option<Sphere>,
-    /// Where a sphere must certainly be hit before to be nearer, as the line counts it.
+    /// The nearest sphere, if the rung was not evaluated for it yet.
+    deferred: Option<Sphere>,
+    /// A sphere that is certainly hit before this is nearer than what was found; in the line's
+    /// units.
     low: f32,
 }
 
@@ -121,53 +123,53 @@ impl Search {
             end: ray.end(),
             line,
             hit: Hit::NONE,
-            unasked: None,
+            deferred: None,
             low: ray.end() * line.unit,
         }
     }
 
-    /// What was found; with `ANY` only whether anything was.
+    /// The nearest hit; with `ANY`, only whether there is one.
     #[inline(always)]
     pub(super) fn finish<const ANY: bool>(&mut self) -> Hit {
         if !ANY {
-            self.ask_at_last();
+            self.evaluate_deferred();
         }
         self.hit
     }
 
-    /// Asks about the sphere that was found without.
+    /// Evaluates the rung for the deferred sphere.
     #[inline(always)]
-    fn ask_at_last(&mut self) {
-        if let Some(sphere) = self.unasked.take() {
+    fn evaluate_deferred(&mut self) {
+        if let Some(sphere) = self.deferred.take() {
             self.ray.t_max = self.end;
             let t = (self.intersect)(sphere, &self.ray);
             if t < self.end {
                 self.found_at(t, self.hit.sphere);
             } else {
-                // No hit after all only where numbers are beyond what bounds are made for.
+                // It can only be a miss if numbers exceed the range that the bounds are made for.
                 self.hit = Hit::NONE;
                 self.low = self.end * self.line.unit;
             }
         }
     }
 
-    /// Takes the rung's answer about the sphere that is nearest.
+    /// Records a hit of the rung as the nearest.
     #[inline(always)]
     fn found_at(&mut self, t: f32, sphere: u32) {
         self.hit = Hit { t, sphere };
         self.low = t * self.line.unit;
-        // One as near is still of interest, if its index is lower.
+        // One at the same distance still counts, if its index is lower.
         self.ray.t_max = t.next_up();
     }
 
-    /// Whether it is certain what a sphere is to the ray; it is taken if it is the nearest.
+    /// Whether the bounds decide about a sphere. If it is certainly the nearest, it is recorded.
     #[inline(always)]
     fn is_certain(&mut self, sphere: Sphere, index: u32) -> bool {
         let bounds = self.line.bounds(sphere);
         if bounds.hits & (bounds.high < self.low) {
             self.low = bounds.low;
-            self.unasked = Some(sphere);
-            // A quotient by a power of two.
+            self.deferred = Some(sphere);
+            // Exact: the unit is a power of two.
             self.ray.t_max = bounds.high / self.line.unit;
             self.hit = Hit {
                 t: self.ray.t_max,
@@ -178,7 +180,7 @@ impl Search {
         !bounds.is_open(self.ray.t_max * self.line.unit)
     }
 
-    /// Tests `count` spheres from `first` on; those that there are not are left out.
+    /// Tests `count` spheres from `first` on; indices beyond the last sphere are ignored.
     #[inline(always)]
     pub(super) fn test<const ANY: bool, S: Spheres + ?Sized>(
         &mut self,
@@ -189,7 +191,7 @@ impl Search {
         let end = first.saturating_add(count).min(spheres.count());
         let mut at = first;
         while at < end {
-            // Behind the last of all, the last again.
+            // The last sphere fills the lanes beyond the end.
             let last = spheres.count() - 1;
             let four = if last - at >= LANES as u32 - 1 {
                 // SAFETY: each is at most the last.
@@ -198,9 +200,9 @@ impl Search {
                 // SAFETY: each is at most the last.
                 [0, 1, 2, 3].map(|lane| unsafe { spheres.sphere(at + lane.min(last - at)) })
             };
-            let mut found = self.sift(four);
+            let mut found = self.cull(four);
             found &= (1 << (end - at).min(LANES as u32)) - 1;
-            self.ask::<ANY, S>(spheres, at, found);
+            self.evaluate::<ANY, S>(spheres, at, found);
             if ANY & self.hit.is_some() {
                 return;
             }
@@ -208,7 +210,7 @@ impl Search {
         }
     }
 
-    /// [`test`](Search::test) of sixteen at a time.
+    /// [`test`](Search::test), sixteen spheres at a time.
     #[cfg(target_arch = "x86_64")]
     #[inline(always)]
     pub(super) fn test_wide<const ANY: bool>(
@@ -234,9 +236,9 @@ impl Search {
                     a,
                     ..
                 } = self.line;
-                avx512::sift(origin, direction, a, bounded, some)
+                avx512::cull(origin, direction, a, bounded, some)
             };
-            self.ask::<ANY, [Sphere]>(spheres, at, found);
+            self.evaluate::<ANY, [Sphere]>(spheres, at, found);
             if ANY & self.hit.is_some() {
                 return;
             }
@@ -244,9 +246,10 @@ impl Search {
         }
     }
 
-    /// Asks about those spheres from `first` on whose bit is set, which are there.
+    /// Evaluates the rung for the spheres from `first` on whose bit is set in `found`; all must
+    /// exist.
     #[inline(always)]
-    pub(super) fn ask<const ANY: bool, S: Spheres + ?Sized>(
+    pub(super) fn evaluate<const ANY: bool, S: Spheres + ?Sized>(
         &mut self,
         spheres: &S,
         first: u32,
@@ -255,7 +258,7 @@ impl Search {
         while found != 0 {
             let index = first + found.trailing_zeros();
             found &= found - 1;
-            // SAFETY: the sphere is there.
+            // SAFETY: the caller says that the sphere exists.
             let sphere = unsafe { spheres.sphere(index) };
             if self.is_lazy {
                 if self.is_certain(sphere, index) {
@@ -264,10 +267,11 @@ impl Search {
                     }
                     continue;
                 }
-                self.ask_at_last();
+                self.evaluate_deferred();
             }
             let t = if self.is_robust {
-                // Most rays are on it: without a call, and with the instructions that the walk is compiled for.
+                // Most rays use this rung: no call, and the instructions that the walk is compiled
+                // for.
                 Robust::intersect(sphere, &self.ray)
             } else {
                 (self.intersect)(sphere, &self.ray)
@@ -285,7 +289,7 @@ impl Search {
 
     /// Which of four spheres may be hit, a bit each.
     #[inline(always)]
-    fn sift(&self, spheres: [Sphere; LANES]) -> u32 {
+    fn cull(&self, spheres: [Sphere; LANES]) -> u32 {
         let [first, second, third, fourth] = spheres.map(Sphere::to_vec4);
         let rows = Mat4::from_cols(first, second, third, fourth).transpose();
         let splat = |value| Four(Vec4::splat(value));

@@ -1,10 +1,10 @@
-//! [`Single`]: rays one by one on the CPU.
+//! [`Single`]: rays on the CPU, without an image.
 //!
-//! Four spheres at a time are sifted by the discriminant of
-//! [`candidates`](spherule_kernel::cull::discriminant), whose slack covers every rung, and only what may be a hit is
-//! asked about on its rung; of the rungs that take long, only the nearest at the end, and what
-//! [`bounds`](spherule_kernel::cull::bounds) leave open. With AVX2, which is looked for when the program runs, the eight boxes of a node
-//! are tested side by side, too; without it the kernel's walk does that. With AVX-512 rays in worlds that are not too
+//! Spheres are culled four at a time by the [discriminant](spherule_kernel::cull::discriminant),
+//! whose slack covers every rung. The rung is evaluated only for possible hits; slow rungs only for
+//! the nearest sphere at the end, and for those that [`bounds`](spherule_kernel::cull::bounds)
+//! leave open. With AVX2, which is detected at run time, the eight boxes of a node are tested at
+//! once, too; without it the kernel's walk is used. With AVX-512, rays in worlds that are not too
 //! large go through [`Levels`] instead, sixteen at a time.
 
 use spherule_kernel::accel::brute::MovingSpheres;
@@ -24,20 +24,21 @@ use super::walk::{self, Features};
 #[cfg(target_arch = "x86_64")]
 use crate::cpu::InstructionSet;
 
-/// What finds the hits of rays on one rung, in a tree or without one.
+/// Finds the hits of rays on one rung, in a tree or without one.
 #[derive(Clone, Copy, Debug)]
 pub struct Single<'a> {
     query: Query<'a>,
-    /// That the machine has it.
+    /// The proof that the machine has them.
     #[cfg(target_arch = "x86_64")]
     features: Option<Features>,
-    /// The tree's boxes in levels, and the instructions for them.
+    /// The tree's boxes in levels, and the proof of the instructions for them.
     #[cfg(target_arch = "x86_64")]
     levels: Option<(Avx512, &'a Levels)>,
 }
 
 impl<'a> Single<'a> {
-    /// For rays on this rung. With a tree, spheres are in the order of its leaves. Levels are those of the tree.
+    /// A tracer for one rung. With a tree, the spheres must be in the order of its leaves, and
+    /// `levels` those of the tree.
     #[must_use]
     pub fn new(rung: Rung, tree: Tree<'a>, levels: Option<&'a Levels>) -> Self {
         #[cfg(target_arch = "x86_64")]
@@ -55,8 +56,8 @@ impl<'a> Single<'a> {
         }
     }
 
-    /// What each ray hits: the nearest, or with `ANY` the first that is found. `put` is told the ray's
-    /// index, not in order.
+    /// Finds what each ray hits: the nearest, or with `ANY` the first that is found. `put` receives
+    /// each ray's index and hit, in any order.
     pub fn trace<const ANY: bool, S: Resting + ?Sized>(
         &self,
         rays: &[Ray],

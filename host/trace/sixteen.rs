@@ -1,4 +1,4 @@
-//! [`Sixteen`]: rays side by side, and what stays the same of each from sphere to sphere.
+//! [`Sixteen`]: sixteen rays in vectors, and what stays the same of each from sphere to sphere.
 
 use std::arch::x86_64::*;
 
@@ -41,26 +41,26 @@ impl Lanes<f32> {
     }
 }
 
-/// Up to sixteen rays. What is behind the last of them is of no ray.
+/// Up to sixteen rays. Lanes beyond the last ray are unused.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Sixteen {
-    /// As the rays have them.
+    /// As in the rays.
     origin: [Lanes<f32>; 3],
     direction: [Lanes<f32>; 3],
     t_min: Lanes<f32>,
     end: Lanes<f32>,
-    /// The direction's squared length, and one over it.
+    /// The direction's squared length, and its inverse.
     squared: Lanes<f32>,
     inverse_squared: Lanes<f32>,
     slabs: ManySlabs,
-    /// 1 for those that [`is_plain`] says are.
+    /// 1 for the rays that [`is_plain`] accepts.
     are_plain: [u32; LANES],
     /// [`Line::direction`] and [`Line::a`].
     scaled: [Lanes<f32>; 3],
     scaled_squared: Lanes<f32>,
 }
 
-/// What [`Slabs`] are of a ray, and where it ends, as they count it.
+/// One ray's [`Slabs`], and its end in their units.
 #[derive(Clone, Copy)]
 pub(super) struct Planes {
     pub(super) inverse: [f32; 3],
@@ -83,7 +83,7 @@ impl Planes {
     }
 }
 
-/// What is used of [`Slabs`].
+/// The fields of [`Slabs`] that are used, for every ray.
 #[derive(Clone, Debug, Default)]
 struct ManySlabs {
     inverse: [Lanes<f32>; 3],
@@ -93,25 +93,26 @@ struct ManySlabs {
     end: Lanes<f32>,
 }
 
-/// The end of a ray, as its planes count it; that of one that ends before it starts is zero.
+/// The end of a ray in the units of its slabs; zero for a ray that ends before it starts.
 #[inline(always)]
 pub(super) fn end_of(slabs: &Slabs, t: f32) -> f32 {
     Slabs::widened_end(t * slabs.unit - slabs.start).max(0.0)
 }
 
-/// Whether a ray's numbers are such that it does not meet a box from 2⁶⁰ to −2⁶⁰ along each axis. Its inverse direction i is
-/// at least 1/2 then, and where it enters such a box is behind where it leaves it by 2 · 2⁶⁰ i, less twice what planes are moved by,
-/// which is below 2⁵⁵ i + 2⁴⁰. Numbers that are none are not plain.
+/// Whether a ray certainly misses a box from 2⁶⁰ to −2⁶⁰ along each axis. Its inverse direction i
+/// is then at least 1/2, and the ray enters such a box after it leaves it, by 2 · 2⁶⁰ i less twice
+/// the widening of the planes, which is below 2⁵⁵ i + 2⁴⁰. A ray with NaN is not plain.
 #[inline(always)]
 pub(super) fn is_plain(ray: &Ray, start: f32) -> bool {
-    // A sum of what is not negative is no number or infinite if any of it is.
+    // A sum of absolute values is NaN or infinite if any of them is.
     let far = ray.origin.abs().element_sum() + start.abs();
     let fast = ray.direction.abs().element_sum();
     (far < Node::MAX_COORDINATE) & (fast <= f32::MAX)
 }
 
 impl Sixteen {
-    /// Takes the rays of a slice, sixteen at most. Returns whether all are plain; if not, they are not to be asked about.
+    /// Takes the rays of a slice, sixteen at most. Returns whether all are plain; if not, they must
+    /// not be traced here.
     #[must_use]
     #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
     pub(super) fn take(&mut self, rung: Rung, rays: &[Ray], world: &Extent) -> bool {
@@ -129,7 +130,8 @@ impl Sixteen {
             .all(|is| *is == 1)
     }
 
-    /// Makes the rays ready for boxes and spheres. Loops over arrays become vector instructions.
+    /// Prepares the rays for boxes and spheres. The compiler turns the loops over arrays into
+    /// vector instructions.
     #[inline(never)]
     #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
     fn ready<const RUNG: u32>(&mut self, world: &Extent) {
@@ -195,17 +197,18 @@ impl Sixteen {
     /// Which of up to sixteen spheres a ray may hit, a bit each.
     #[inline]
     #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
-    pub(super) fn sift(&self, ray: usize, spheres: &[Sphere]) -> u32 {
+    pub(super) fn cull(&self, ray: usize, spheres: &[Sphere]) -> u32 {
         let ray = ray % LANES;
         let of = |lanes: &[Lanes<f32>; 3]| Vec3::from_array(lanes.each_ref().map(|of| of.0[ray]));
         let a = self.scaled_squared.0[ray];
-        avx512::sift(of(&self.origin), of(&self.scaled), a, None, spheres)
+        avx512::cull(of(&self.origin), of(&self.scaled), a, None, spheres)
     }
 
-    /// Where each of sixteen pairs of a ray and a sphere meets on [`Rung::Robust`], [`Hit::NONE_T`] where it does
-    /// not. Both are told by index.
+    /// Where the ray and the sphere of each of sixteen pairs meet on [`Rung::Robust`];
+    /// [`Hit::NONE_T`] where they do not. Both are given by index.
     #[inline]
-    // All that `fearless_simd` has its AVX-512 made of, or none of it becomes part of this.
+    // All features that `fearless_simd` compiles its AVX-512 for; otherwise nothing of it is
+    // inlined.
     #[target_feature(
         enable = "adx,aes,avx512bitalg,avx512bw,avx512cd,avx512dq,avx512f,avx512ifma,avx512vbmi,avx512vbmi2,avx512vl,avx512vnni,avx512vpopcntdq,bmi1,bmi2,cmpxchg16b,fma,fxsr,gfni,lzcnt,movbe,pclmulqdq,popcnt,rdrand,rdseed,sha,vaes,vpclmulqdq,xsave,xsavec,xsaveopt,xsaves"
     )]
@@ -221,7 +224,7 @@ impl Sixteen {
         let at = _mm512_slli_epi32::<2>(indices);
         let [cx, cy, cz, radius] = [0, 1, 2, 3].map(|row| {
             let at = _mm512_add_epi32(at, _mm512_set1_epi32(row));
-            // SAFETY: four floats a sphere, and the spheres are there.
+            // SAFETY: four floats a sphere, and the spheres exist.
             number(unsafe { _mm512_i32gather_ps::<4>(at, spheres.as_ptr().cast()) })
         });
         let [x, y, z] = self.direction.each_ref().map(of);

@@ -1,10 +1,11 @@
 //! Sixteen rays at a time through [`Levels`], with AVX-512.
 //!
-//! Each step is done for all sixteen before the next: the boxes that they meet on a level, those on the level below, the
-//! spheres that may be hit, and what the rung says of them. A step is one loop over a list of pairs that the step before has
-//! written, without any decision in it: the processor has nothing to guess, and what one ray waits for does not hold up
-//! the others. That is worth more than to leave out what is behind the nearest hit, as long as rays do not meet
-//! too many boxes; those of rays that do go through the tree instead.
+//! Each step is done for all sixteen before the next step: the boxes that they meet on a level,
+//! those on the level below, the spheres that may be hit, and the hits on the rung. A step is one
+//! loop, without branches, over a list of pairs that the step before has written: the processor has
+//! nothing to predict, and a ray that waits does not hold up the others. This saves more than
+//! skipping what is behind the nearest hit would, as long as rays do not meet too many boxes.
+//! Sixteen rays that do go through the tree instead.
 
 use std::arch::x86_64::*;
 use std::cell::RefCell;
@@ -21,23 +22,23 @@ use super::walk::{self, Features};
 
 /// The most boxes that sixteen rays may meet.
 const MOST: usize = 64 * LANES;
-/// The most boxes in two levels.
+/// The most boxes at the bottom of two levels.
 const MOST_ALONE: usize = 1024;
-/// How many pairs of rays and spheres wait before they are asked about.
+/// The most pairs of rays and spheres that wait for the rung.
 const WAITING: usize = 1024;
 
 thread_local! {
     static ROOM: RefCell<Room> = RefCell::default();
 }
 
-/// Lists that are kept for the next rays.
+/// Lists that are reused for the next rays.
 #[derive(Default)]
 struct Room {
     sixteen: Sixteen,
-    /// Boxes that rays meet, and those of the level below.
+    /// Pairs of rays and the boxes that they meet, and those of the level below.
     pairs: Vec<u32>,
     below: Vec<u32>,
-    /// Spheres that rays may hit.
+    /// Pairs of rays and the spheres that they may hit.
     rays: Vec<u32>,
     spheres: Vec<u32>,
 }
@@ -53,7 +54,8 @@ const fn of_pair(pair: u32) -> (usize, usize) {
     ((pair >> Levels::INDEX_BITS) as usize, index as usize)
 }
 
-/// What each ray hits; `put` is told the ray's index. There are at least as many spheres as levels name.
+/// Finds what each ray hits; `put` receives the ray's index. There must be at least as many spheres
+/// as the levels name.
 #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
 pub(super) fn trace<const ANY: bool>(
     wide: Avx512,
@@ -81,7 +83,7 @@ pub(super) fn trace<const ANY: bool>(
         if room.pairs.len() > MOST {
             walk::trace::<ANY, _>(Features::Avx512(wide), query, rays, spheres, put);
         } else if query.rung == Rung::Robust {
-            let nearest = room.ask(wide, levels, spheres);
+            let nearest = room.evaluate(wide, levels, spheres);
             for index in 0..rays.len() {
                 put(index, nearest.hit(index));
             }
@@ -100,9 +102,10 @@ pub(super) fn trace<const ANY: bool>(
     ROOM.set(room);
 }
 
-/// What one ray hits, in a world of two levels at most. There are at least as many spheres as levels name.
+/// Finds what one ray hits, in a world of at most two levels. There must be at least as many
+/// spheres as the levels name.
 ///
-/// Alone a ray goes through boxes from the nearest on, and leaves out those behind what it has found.
+/// A single ray goes through boxes from the nearest on, and skips those behind its nearest hit.
 #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
 pub(super) fn trace_one<const ANY: bool>(
     wide: Avx512,
@@ -111,14 +114,14 @@ pub(super) fn trace_one<const ANY: bool>(
     ray: &Ray,
     spheres: &[Sphere],
 ) -> Hit {
-    /// A key's bits that say which box.
+    /// The bits of a key that hold the box's index.
     const INDEX: i32 = MOST_ALONE as i32 - 1;
     let slabs = Slabs::of(query.rung.to_u32(), ray, &query.extent);
     if !is_plain(ray, slabs.start) {
         return walk::trace_one::<ANY, _>(Features::Avx512(wide), query, ray, spheres);
     }
     let planes = Planes::of(&slabs, ray.end());
-    // Where a box is entered, as a float's bits, whose lowest say which box.
+    // Where a box is entered, as a float's bits, the lowest of which hold the box's index.
     let mut keys = [const { MaybeUninit::<i32>::uninit() }; MOST_ALONE + LANES];
     let mut count = 0;
     let mut enter = |group: &Group, first: usize| {
@@ -129,7 +132,7 @@ pub(super) fn trace_one<const ANY: bool>(
             _mm512_or_epi32(_mm512_set1_epi32(first as i32), lanes()),
             _mm512_set1_epi32(INDEX),
         );
-        // SAFETY: there is room for sixteen behind the most that there may be.
+        // SAFETY: there is room for sixteen more than the most boxes.
         unsafe {
             let to = keys.as_mut_ptr().add(count);
             _mm512_storeu_epi32(to.cast(), _mm512_maskz_compress_epi32(is_met, found));
@@ -155,7 +158,7 @@ pub(super) fn trace_one<const ANY: bool>(
     let mut search = query.search(ray);
     let mut last_key = i32::MAX;
     for done in 0..keys.len() {
-        // The nearest of the others to its place.
+        // Moves the nearest of the rest to its place.
         for other in done + 1..keys.len() {
             let (a, b) = (keys[done], keys[other]);
             (keys[done], keys[other]) = (a.min(b), a.max(b));
@@ -175,7 +178,7 @@ pub(super) fn trace_one<const ANY: bool>(
 }
 
 impl Room {
-    /// Finds the boxes on top that rays meet.
+    /// Finds the boxes on the top level that rays meet.
     #[inline]
     #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
     fn begin(&mut self, top: &[Group], count: usize) {
@@ -184,7 +187,7 @@ impl Room {
             for (index, group) in top.iter().enumerate() {
                 let (is_met, _) = group.meets(&self.sixteen.planes(ray));
                 let first = _mm512_set1_epi32(pair(ray, LANES * index).cast_signed());
-                // SAFETY: sixteen of each group at most.
+                // SAFETY: at most sixteen of each group.
                 unsafe { pairs.push(is_met, _mm512_or_epi32(first, lanes())) };
             }
         }
@@ -198,25 +201,25 @@ impl Room {
         let mut below = Writer::new(&mut self.below, LANES * self.pairs.len());
         for met in &self.pairs {
             let (ray, index) = of_pair(*met);
-            // SAFETY: a group of those on top, or that of a box of the level above, which each have one here; boxes that are
-            // none were not met.
+            // SAFETY: a group on top, or that of a box of the level above, which each have one
+            // here; unused boxes were not met.
             let group = unsafe { level.get_unchecked(index) };
             let (is_met, _) = group.meets(&self.sixteen.planes(ray));
             let first = _mm512_set1_epi32(pair(ray, LANES * index).cast_signed());
-            // SAFETY: sixteen of each pair at most.
+            // SAFETY: at most sixteen of each pair.
             unsafe { below.push(is_met, _mm512_or_epi32(first, lanes())) };
         }
         below.finish();
         std::mem::swap(&mut self.pairs, &mut self.below);
     }
 
-    /// Finds what rays hit of the spheres in the boxes that they are paired with.
+    /// Finds what rays hit among the spheres in the boxes that they are paired with.
     #[inline]
     #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
-    fn ask(&mut self, wide: Avx512, levels: &Levels, spheres: &[Sphere]) -> Nearest {
+    fn evaluate(&mut self, wide: Avx512, levels: &Levels, spheres: &[Sphere]) -> Nearest {
         let mut nearest = Nearest([i64::MAX; LANES]);
         let pairs = &self.pairs[..];
-        // As many boxes as there are certainly room for.
+        // As many boxes as there is certainly room for.
         for some in pairs.chunks(WAITING / LANES) {
             let mut rays = Writer::new(&mut self.rays, WAITING);
             let mut indices = Writer::new(&mut self.spheres, WAITING);
@@ -228,9 +231,9 @@ impl Room {
                     let end = first as usize + count as usize;
                     (first, spheres.get_unchecked(first as usize..end))
                 };
-                let found = self.sixteen.sift(ray, some) as __mmask16;
+                let found = self.sixteen.cull(ray, some) as __mmask16;
                 let first = _mm512_set1_epi32(first.cast_signed());
-                // SAFETY: sixteen of each box at most.
+                // SAFETY: at most sixteen of each box.
                 unsafe {
                     indices.push(found, _mm512_add_epi32(first, lanes()));
                     rays.push(found, _mm512_set1_epi32(ray as i32));
@@ -238,8 +241,8 @@ impl Room {
             }
             rays.finish();
             indices.finish();
-            // SAFETY: the machine has all of AVX-512 that is asked for, as the proof says.
-            unsafe { nearest.ask(wide, &self.sixteen, &self.rays, &self.spheres, spheres) };
+            // SAFETY: the machine has every feature of AVX-512 that this needs, as the proof says.
+            unsafe { nearest.evaluate(wide, &self.sixteen, &self.rays, &self.spheres, spheres) };
         }
         nearest
     }
@@ -251,7 +254,7 @@ fn lanes() -> __m512i {
     _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15)
 }
 
-/// What writes a list anew.
+/// Overwrites a list.
 struct Writer<'a> {
     list: &'a mut Vec<u32>,
     to: *mut u32,
@@ -259,7 +262,7 @@ struct Writer<'a> {
 }
 
 impl<'a> Writer<'a> {
-    /// Of a list that will have as many numbers at most.
+    /// Starts a list of at most `most` numbers.
     #[inline(always)]
     fn new(list: &'a mut Vec<u32>, most: usize) -> Self {
         list.clear();
@@ -271,7 +274,7 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// Adds those of sixteen values that are chosen.
+    /// Appends the chosen ones of sixteen values.
     ///
     /// # Safety
     ///
@@ -279,7 +282,7 @@ impl<'a> Writer<'a> {
     #[inline]
     #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
     unsafe fn push(&mut self, chosen: __mmask16, values: __m512i) {
-        // SAFETY: there is room for sixteen behind what there is room for.
+        // SAFETY: there is room for sixteen more than the caller guarantees.
         unsafe {
             let to = self.to.add(self.length);
             _mm512_storeu_epi32(to.cast(), _mm512_maskz_compress_epi32(chosen, values));
@@ -289,12 +292,12 @@ impl<'a> Writer<'a> {
 
     #[inline(always)]
     fn finish(self) {
-        // SAFETY: so many were written.
+        // SAFETY: as many were written.
         unsafe { self.list.set_len(self.length) };
     }
 }
 
-/// Sixteen numbers of 64 bits of their upper and lower halves.
+/// Joins upper and lower halves into sixteen numbers of 64 bits.
 #[inline]
 #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
 fn joined(upper: __m512i, lower: __m512i) -> (__m512i, __m512i) {
@@ -346,18 +349,18 @@ impl Group {
     }
 }
 
-/// The nearest hit of each ray: where, as a whole number that is larger where the float is, in the upper half, and the
-/// sphere in the lower.
+/// The nearest hit of each ray. The upper half of a number is the distance, as an integer in the
+/// order of the floats; the lower half is the sphere.
 struct Nearest([i64; LANES]);
 
 impl Nearest {
-    /// Asks about pairs of rays and spheres.
+    /// Evaluates the rung for pairs of rays and spheres.
     #[inline]
-    // As `Sixteen::robust`, which becomes part of this.
+    // As for `Sixteen::robust`, which is inlined here.
     #[target_feature(
         enable = "adx,aes,avx512bitalg,avx512bw,avx512cd,avx512dq,avx512f,avx512ifma,avx512vbmi,avx512vbmi2,avx512vl,avx512vnni,avx512vpopcntdq,bmi1,bmi2,cmpxchg16b,fma,fxsr,gfni,lzcnt,movbe,pclmulqdq,popcnt,rdrand,rdseed,sha,vaes,vpclmulqdq,xsave,xsavec,xsaveopt,xsaves"
     )]
-    fn ask(
+    fn evaluate(
         &mut self,
         wide: Avx512,
         sixteen: &Sixteen,
@@ -367,7 +370,7 @@ impl Nearest {
     ) {
         for (rays, indices) in rays.chunks(LANES).zip(indices.chunks(LANES)) {
             let there = _bzhi_u32(0xffff, rays.len() as u32) as __mmask16;
-            // SAFETY: only those that there are, are read.
+            // SAFETY: only lanes within both lists are read.
             let (some_rays, some_indices) = unsafe {
                 (
                     _mm512_maskz_loadu_epi32(there, rays.as_ptr().cast()),
@@ -375,7 +378,7 @@ impl Nearest {
                 )
             };
             let t = sixteen.robust(wide, some_rays, spheres, some_indices);
-            // Of two zeros one.
+            // Makes −0 into +0.
             let t = _mm512_add_ps(t, _mm512_setzero_ps());
             let hits = _mm512_mask_cmp_ps_mask::<_CMP_LT_OQ>(there, t, _mm512_set1_ps(Hit::NONE_T));
             let bits = _mm512_castps_si512(t);
@@ -391,7 +394,7 @@ impl Nearest {
                 _mm512_storeu_epi64(found.as_mut_ptr(), first);
                 _mm512_storeu_epi64(found.as_mut_ptr().add(8), second);
             }
-            // What is not there has not found anything.
+            // Lanes beyond the lists have no hit.
             for i in 0..LANES {
                 let nearest = &mut self.0[of[i] as usize % LANES];
                 *nearest = found[i].min(*nearest);
@@ -428,15 +431,16 @@ mod tests {
     use crate::cpu::InstructionSet;
     use crate::random::Random;
 
-    /// Each ray finds what testing every sphere finds, with others and alone, on every rung: in worlds of one box and of many
-    /// levels, and where all spheres are in almost the same place, so that there are too many boxes.
+    /// Each ray finds what testing every sphere finds, together with others and alone, on every
+    /// rung: in worlds of one box and of many levels, and with all spheres in almost the same
+    /// place, so that there are too many boxes.
     #[test]
     fn streams_find_what_testing_every_sphere_finds() {
         if Avx512::of(InstructionSet::Avx512).is_none() {
             return;
         }
         let mut random = Random::new(11);
-        // Of equal ones a tree would hold the first only.
+        // If they were equal, the tree would keep only the first.
         let heap = (0..2000)
             .map(|shell| Sphere::new(Vec3::new(0.1, 0.2, -0.3), 0.7 + 1e-6 * shell as f32))
             .collect();

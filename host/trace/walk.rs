@@ -1,9 +1,9 @@
-//! The walk of [`Single`] on machines with wide instructions: the eight boxes of a node side by side.
+//! The walk of [`Single`] on machines with wide instructions: all eight boxes of a node at once.
 //!
-//! What differs from the kernel's walk is that the nearest box is entered first, that one beyond the
-//! nearest hit is left out when its turn comes, and that four rays take turns, so that what one waits for does
-//! not hold up the others. With AVX-512 the boxes of a node without nodes in it are not looked at: its spheres, which are 32
-//! at most, are tested sixteen at a time.
+//! It differs from the kernel's walk: the nearest box is entered first, a box beyond the nearest
+//! hit is skipped when its turn comes, and four rays take turns, so that a ray that waits does not
+//! hold up the others. With AVX-512 the boxes of a node without nodes as children are not tested:
+//! its spheres, at most 32, are tested sixteen at a time.
 
 use std::arch::x86_64::*;
 use std::mem::MaybeUninit;
@@ -19,13 +19,13 @@ use super::wide::Wide;
 use crate::cpu::InstructionSet;
 
 const WIDTH: usize = Node::WIDTH;
-/// The most entries of a stack: each node on the way leaves at most seven behind, and a last one is written
-/// eight at once.
+/// The most entries on a stack: each node on the way leaves at most seven behind, and the last one
+/// writes eight at once.
 const MAX_HEIGHT: usize = Node::MAX_DEPTH * (WIDTH - 1) + WIDTH;
 /// Rays that take turns.
 const RAYS: usize = 4;
 
-/// Instructions that a machine has, by the proof of it.
+/// The instructions that the walk uses, with the proof that the machine has them.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Features {
     Avx2(Avx2),
@@ -33,14 +33,14 @@ pub(super) enum Features {
 }
 
 impl Features {
-    /// Of an instruction set; `None` for less than AVX2.
+    /// The features of an instruction set; `None` for less than AVX2.
     pub(super) fn of(instructions: InstructionSet) -> Option<Self> {
         let avx512 = Avx512::of(instructions).map(Self::Avx512);
         avx512.or_else(|| Avx2::of(instructions).map(Self::Avx2))
     }
 }
 
-/// What a ray hits: the nearest, or with `ANY` the first that is found.
+/// Finds what a ray hits: the nearest, or with `ANY` the first that is found.
 pub(super) fn trace_one<const ANY: bool, S: Resting + ?Sized>(
     features: Features,
     query: &Query<'_>,
@@ -57,7 +57,7 @@ pub(super) fn trace_one<const ANY: bool, S: Resting + ?Sized>(
     }
 }
 
-/// What each ray hits; `put` is told the ray's index.
+/// Finds what each ray hits; `put` receives the ray's index.
 pub(super) fn trace<const ANY: bool, S: Resting + ?Sized>(
     features: Features,
     query: &Query<'_>,
@@ -129,7 +129,7 @@ fn in_turns<const ANY: bool, W: Wide, S: Resting + ?Sized>(
     let mut rest = rays.iter().enumerate();
     let mut walks = [const { MaybeUninit::<Walk<W>>::uninit() }; RAYS];
     let mut indices = [0; RAYS];
-    // How many are under way: the first ones.
+    // The first `count` walks are under way.
     let mut count = 0;
     for (walk, index) in walks.iter_mut().zip(&mut indices) {
         let Some((of, ray)) = rest.next() else { break };
@@ -152,7 +152,7 @@ fn in_turns<const ANY: bool, W: Wide, S: Resting + ?Sized>(
                 indices[place] = of;
                 place += 1;
             } else {
-                // The last takes its place.
+                // The last walk takes its place.
                 count -= 1;
                 walks.swap(place, count);
                 stacks.swap(place, count);
@@ -162,8 +162,8 @@ fn in_turns<const ANY: bool, W: Wide, S: Resting + ?Sized>(
     }
 }
 
-/// Boxes that were met and not entered yet, the nearest of the latest on top. A key is where the ray
-/// enters a box, as a float's bits, whose lowest three say which child of its parent that is.
+/// Boxes that were met and not entered yet, the nearest of the latest node on top. A key is where
+/// the ray enters a box, as a float's bits; the lowest three say which child of its parent it is.
 struct Stack {
     keys: [MaybeUninit<i32>; MAX_HEIGHT],
     parents: [MaybeUninit<u32>; MAX_HEIGHT],
@@ -177,7 +177,7 @@ impl Stack {
         }
     }
 
-    /// Puts eight at `height`, which is made to be in range.
+    /// Writes eight entries at `height`, which is clamped to the range.
     #[inline(always)]
     fn put(&mut self, _: impl Wide, height: usize, keys: __m256i, parent: u32) {
         let height = height.min(MAX_HEIGHT - WIDTH);
@@ -193,11 +193,11 @@ impl Stack {
     ///
     /// # Safety
     ///
-    /// Eight were put there, or so far below that they reach it.
+    /// Eight entries must have been written there, or so little below that they reach it.
     #[inline(always)]
     unsafe fn get(&self, height: usize) -> (i32, u32) {
         let height = height.min(MAX_HEIGHT - 1);
-        // SAFETY: `height` is in range, and what is there the caller's.
+        // SAFETY: `height` is in range, and the caller says that the entry was written.
         unsafe {
             (
                 self.keys.get_unchecked(height).assume_init(),
@@ -212,14 +212,14 @@ struct Walk<W: Wide> {
     wide: W,
     search: Search,
     planes: W::Planes,
-    /// The start of the ray's interval, which the planes count from.
+    /// The start of the ray's interval, from which the planes measure.
     start: f32,
     unit: f32,
-    /// The largest key that is of interest.
+    /// The largest key that still matters.
     last_key: i32,
-    /// The node whose boxes are next.
+    /// The node whose boxes are tested next.
     node: u32,
-    /// Entries on the stack.
+    /// The number of entries on the stack.
     height: usize,
 }
 
@@ -241,17 +241,17 @@ impl<W: Wide> Walk<W> {
         walk
     }
 
-    /// What is beyond `t` is of no interest any more.
+    /// Ends the ray at `t`: what is beyond does not matter any more.
     #[inline(always)]
     fn end_at(&mut self, t: f32) {
         let end = Slabs::widened_end(t * self.unit - self.start);
         self.wide.end_at(&mut self.planes, end);
-        // A ray that ends before it starts has no boxes.
+        // A ray that ends before it starts meets no boxes.
         self.last_key = (end.max(0.0).to_bits() | 7).cast_signed();
     }
 
-    /// Tests one node's boxes, and the spheres that are next before another node is; false once the ray
-    /// is done.
+    /// Tests one node's boxes, and spheres until the next node is on top of the stack. Returns
+    /// false once the ray is done.
     #[inline(always)]
     fn step<const ANY: bool, S: Resting + ?Sized>(
         &mut self,
@@ -266,7 +266,7 @@ impl<W: Wide> Walk<W> {
                 .wide
                 .test_all::<ANY, S>(&mut self.search, spheres, node)
         {
-            // One that is met goes by the stack, too: a processor guesses wrong how many are.
+            // Even a single box goes through the stack: a processor mispredicts how many are met.
             let (met, near) = self.wide.meets(&self.planes, node);
             let keys = self.wide.keys(met, near);
             stack.put(self.wide, self.height, keys, self.node);
@@ -285,7 +285,7 @@ impl<W: Wide> Walk<W> {
             if node.is_node(child) {
                 self.node = node.child(child);
                 let next: *const Node = &raw const nodes[(self.node as usize).min(last)];
-                // SAFETY: asking for memory changes nothing.
+                // SAFETY: a prefetch changes nothing.
                 unsafe {
                     _mm_prefetch::<_MM_HINT_T0>(next.cast());
                     _mm_prefetch::<_MM_HINT_T0>(next.cast::<i8>().wrapping_add(64));
@@ -302,12 +302,12 @@ impl<W: Wide> Walk<W> {
         }
     }
 
-    /// The next box of interest: which child of which node.
+    /// The next box that matters: which child of which node.
     #[inline(always)]
     fn pop(&mut self, stack: &Stack) -> Option<(u32, u32)> {
         while self.height > 0 {
             self.height -= 1;
-            // SAFETY: what is below the height was put there.
+            // SAFETY: everything below the height was written.
             let (key, parent) = unsafe { stack.get(self.height) };
             if key <= self.last_key {
                 return Some((key.cast_unsigned() & 7, parent));
@@ -337,7 +337,7 @@ pub(super) mod tests {
         spheres
     }
 
-    /// From anywhere to anywhere, some of them short, some from before their origin on.
+    /// From anywhere to anywhere; some rays are short, and some start behind their origin.
     pub fn rays(random: &mut Random) -> Vec<Ray> {
         (0..1600)
             .map(|index| {
@@ -383,7 +383,8 @@ pub(super) mod tests {
         }
     }
 
-    /// Each ray finds what testing every sphere finds, with all that this machine has, on every rung.
+    /// Each ray finds what testing every sphere finds, on every rung, with every instruction set
+    /// that this machine has.
     #[test]
     fn walks_find_what_testing_every_sphere_finds() {
         let mut random = Random::new(5);
@@ -396,7 +397,7 @@ pub(super) mod tests {
         );
     }
 
-    /// Spheres in motion are tested where they are at the time, not where they lie in memory.
+    /// Moving spheres are tested where they are at the time, not where they lie in memory.
     #[test]
     fn walks_find_spheres_in_motion() {
         let mut random = Random::new(6);
@@ -409,7 +410,7 @@ pub(super) mod tests {
                 time: 1.0,
                 effects: Effects::MOTION_BLUR,
             };
-            // SAFETY: there are as many.
+            // SAFETY: the indices are below the count.
             (0..moving.count())
                 .map(|index| unsafe { moving.sphere(index) })
                 .collect()
