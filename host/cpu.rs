@@ -1,4 +1,4 @@
-//! [`InstructionSet`]: which vector instructions rays are traced with on the CPU.
+//! [`InstructionSet`]: the vector instructions with which rays are traced on the CPU.
 
 use std::fmt;
 use std::sync::OnceLock;
@@ -8,22 +8,23 @@ use fearless_simd::Level;
 use crate::error::{Error, Result, SceneError};
 use crate::shown::shown;
 
-/// The variable that says which instructions are used, by [`InstructionSet::name`]. Without it, the widest of this machine are.
+/// The environment variable that selects the instructions by [`InstructionSet::name`]. Without it,
+/// the widest of this machine are used.
 pub const VARIABLE: &str = "SPHERULE_CPU";
 
-/// Vector instructions, narrow ones first. Pictures and hits are the same with each, bit for bit.
+/// An instruction set, narrow ones first. Images and hits are the same with each, bit for bit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum InstructionSet {
-    /// What every processor of its kind has: SSE2 on x86-64, NEON on Arm.
+    /// The baseline of the architecture: SSE2 on x86-64, NEON on Arm.
     Plain,
     /// AVX2 and FMA, with bit manipulation: x86-64-v3.
     Avx2,
-    /// AVX-512 as Ice Lake and Zen 4 have it.
+    /// AVX-512 as on Ice Lake and Zen 4.
     Avx512,
 }
 
 impl InstructionSet {
-    /// All of them, narrow ones first.
+    /// Every instruction set, narrow ones first.
     pub const ALL: [Self; 3] = [Self::Plain, Self::Avx2, Self::Avx512];
 
     /// Its name.
@@ -37,7 +38,7 @@ impl InstructionSet {
         }
     }
 
-    /// The widest that this machine has.
+    /// The widest instruction set of this machine.
     #[must_use]
     pub fn widest() -> Self {
         let is_there = |set: &Self| set.level().is_some();
@@ -50,11 +51,11 @@ impl InstructionSet {
         self.level().is_some()
     }
 
-    /// What [`VARIABLE`] says, or the widest of this machine.
+    /// The instruction set that [`VARIABLE`] selects, or the widest of this machine.
     ///
     /// # Errors
     ///
-    /// [`Error::Scene`] if it names no instructions, or some that this machine does not have.
+    /// [`Error::Scene`] if it names no instruction set, or one that this machine does not have.
     pub fn wanted() -> Result<Self> {
         let Some(text) = std::env::var_os(VARIABLE).filter(|text| !text.is_empty()) else {
             return Ok(Self::widest());
@@ -81,14 +82,14 @@ impl InstructionSet {
         }
     }
 
-    /// What [`InstructionSet::wanted`] said when it was first asked, or the widest where it refused.
+    /// The result of the first call of [`InstructionSet::wanted`]; the widest if that failed.
     #[must_use]
     pub fn chosen() -> Self {
         static CHOSEN: OnceLock<InstructionSet> = OnceLock::new();
         *CHOSEN.get_or_init(|| Self::wanted().unwrap_or_else(|_| Self::widest()))
     }
 
-    /// As `fearless_simd` has it, if this machine does.
+    /// The set as `fearless_simd` names it, if this machine has it.
     pub(crate) fn level(self) -> Option<Level> {
         let widest = Level::new();
         match self {

@@ -1,4 +1,4 @@
-//! [`Error`]: everything that can go wrong, said so that it can be mended.
+//! [`Error`]: everything that can go wrong, with what to do about it.
 
 use std::ops::Range;
 use std::path::PathBuf;
@@ -13,27 +13,27 @@ pub type Result<T, E = Error> = std::result::Result<T, E>;
 
 /// What went wrong.
 ///
-/// The message says what and where; [`Error::help`] says how to mend it. The first group of
-/// variants are the GPU's, in the order in which a program meets them; `docs/gpu-errors.md`
-/// sets each beside its CUDA counterpart.
+/// The message says what and where; [`Error::help`] says how to fix it. The first group of variants
+/// are the GPU's, in the order in which a program meets them; `docs/gpu-errors.md` sets each beside
+/// its CUDA counterpart.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
-    /// No adapter fits what was asked for.
+    /// No adapter fits the choice.
     #[error("no GPU adapter {wanted}; {found}")]
     NoAdapter {
-        /// What was asked for, as the end of "no GPU adapter …".
+        /// The choice, as the end of "no GPU adapter …".
         wanted: String,
-        /// What there is instead.
+        /// What was found instead.
         found: String,
     },
 
-    /// There are adapters, and none has the name that was given.
+    /// There are adapters, but none has the given name.
     #[error("no GPU adapter has a name that contains \"{name}\"; there is {}", found.join(", "))]
     NoSuchAdapter {
-        /// The part of a name that was asked for.
+        /// The requested part of a name.
         name: String,
-        /// The names of those that there are.
+        /// The names of the adapters that were found.
         found: Vec<String>,
     },
 
@@ -55,14 +55,14 @@ pub enum Error {
         reason: String,
     },
 
-    /// A buffer is larger than the device can make or bind.
+    /// A buffer is larger than the device can allocate or bind.
     #[error("the buffer of {label} needs {needed} bytes, and {device} takes at most {limit}")]
     BufferTooLarge {
         /// What the buffer holds.
         label: String,
-        /// The size it would have.
+        /// The size of the buffer, in bytes.
         needed: u64,
-        /// The device's limit.
+        /// The device's limit, in bytes.
         limit: u64,
         /// The device's name.
         device: String,
@@ -77,25 +77,25 @@ pub enum Error {
         during: String,
     },
 
-    /// The host has no memory left, or may not use more.
-    #[error("out of memory: {purpose} takes {}, {}", bytes(*needed), more_than(*available))]
+    /// The host has no memory left, or the process may not use more.
+    #[error("out of memory: {purpose} needs {}, {}", bytes(*needed), more_than(*available))]
     OutOfHostMemory {
-        /// All that was asked for, in bytes.
+        /// The bytes that were requested, in all.
         needed: u64,
-        /// The bytes that there are, where that was looked up rather than found out by asking for them.
+        /// The available bytes, if they were looked up before the allocation.
         available: Option<u64>,
-        /// What it is for.
+        /// What the memory is for.
         purpose: String,
     },
 
-    /// The pool of threads cannot be started.
-    #[error("the pool of threads cannot be started: {reason}")]
+    /// The thread pool cannot be started.
+    #[error("the thread pool cannot be started: {reason}")]
     Threads {
         /// What rayon or the system said.
         reason: String,
     },
 
-    /// A launch asks for more threads, workgroups or workgroup memory than the device has.
+    /// A launch needs more threads, workgroups or workgroup memory than the device has.
     #[error(
         "the launch of {kernel} does not fit {device}: {what} is {asked}, and the limit is {limit}"
     )]
@@ -104,15 +104,15 @@ pub enum Error {
         kernel: String,
         /// The device's name.
         device: String,
-        /// Which limit.
+        /// What exceeds the limit.
         what: &'static str,
-        /// What the launch asks for.
+        /// What the launch needs.
         asked: u64,
-        /// What the device has.
+        /// The device's limit.
         limit: u64,
     },
 
-    /// wgpu or the driver found a call to be wrong.
+    /// wgpu or the driver rejected a call.
     #[error("the GPU rejected a call while {during}: {reason}")]
     Validation {
         /// What was being done.
@@ -137,13 +137,13 @@ pub enum Error {
     Timeout {
         /// The device's name.
         device: String,
-        /// What was being waited for.
+        /// What the host was waiting for.
         during: String,
-        /// How long it was waited for.
+        /// How long it waited.
         limit: Duration,
     },
 
-    /// The device's arithmetic is not what a rung of the ladder needs.
+    /// The device's arithmetic does not meet the needs of a rung.
     #[error("the precision {} is refused on {device}: {reason}", rung.name())]
     RungRefused {
         /// The rung.
@@ -154,7 +154,7 @@ pub enum Error {
         reason: String,
     },
 
-    /// What a kernel wrote cannot be read back, or it did not write all of it.
+    /// What a kernel wrote cannot be read back, or is incomplete.
     #[error("{what} could not be read back from {device}: {reason}")]
     Readback {
         /// What the buffer holds.
@@ -176,35 +176,36 @@ pub enum Error {
         path: PathBuf,
         /// What is wrong.
         reason: String,
-        /// How to mend it.
+        /// How to fix it.
         help: String,
     },
 
     /// An output cannot be written.
     #[error("{path}: {reason}", path = shown_path(path))]
     Output {
-        /// Its file, as the user calls it.
+        /// The output file, as the user named it.
         path: PathBuf,
         /// What is wrong.
         reason: String,
-        /// How to mend it.
+        /// How to fix it.
         help: String,
     },
 
-    /// An output must not be written where it was asked for: it is an input, another output, or of no known kind.
+    /// An output must not be written there: the file is an input, another output, or of an unknown
+    /// format.
     #[error("{path}: {reason}", path = shown_path(path))]
     OutputRefused {
-        /// Its file, as the user calls it.
+        /// The output file, as the user named it.
         path: PathBuf,
         /// What is wrong.
         reason: String,
-        /// How to mend it.
+        /// How to fix it.
         help: String,
     },
 }
 
 impl Error {
-    /// How to mend it, as a sentence for the person at the keyboard.
+    /// How to fix it, as a sentence for the user.
     #[must_use]
     pub fn help(&self) -> String {
         match self {
@@ -222,7 +223,7 @@ impl Error {
             Self::KernelInvalid { .. } => {
                 "update the graphics driver; if you changed the kernel, check it with spirv-val".into()
             }
-            // Another device takes as much of the host's memory.
+            // Another device needs as much of the host's memory.
             Self::OutOfHostMemory { .. } => {
                 "render a smaller image or fewer spheres, or give the process more memory (`ulimit -v` and `ulimit -d` show its limits)"
                     .into()
@@ -230,7 +231,7 @@ impl Error {
             Self::BufferTooLarge { .. } | Self::OutOfMemory { .. } => {
                 "render fewer spheres or a smaller image, or use `--device cpu`, which uses the host's memory".into()
             }
-            Self::Threads { .. } => "start it once, before any work; or leave rayon's pool as it is".into(),
+            Self::Threads { .. } => "start the pool once, before any work, or use rayon's default pool".into(),
             Self::LaunchLimits { .. } => {
                 "launch fewer or smaller workgroups, or use a device with higher limits (`spherule devices` lists them)"
                     .into()
@@ -260,7 +261,7 @@ impl Error {
         }
     }
 
-    /// Whether the input is to blame (exit code 2) rather than the machine (exit code 1).
+    /// Whether the input is at fault (exit code 2) rather than the machine (exit code 1).
     #[must_use]
     pub fn is_input(&self) -> bool {
         matches!(
@@ -270,7 +271,7 @@ impl Error {
     }
 }
 
-/// The one of `names` that `text` was probably meant to be.
+/// The one of `names` that `text` is most likely meant to be; `None` if none is similar.
 #[cfg(feature = "lab")]
 pub(crate) fn nearest<'a>(text: &str, names: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let text = text.to_lowercase();
@@ -283,15 +284,15 @@ pub(crate) fn nearest<'a>(text: &str, names: impl IntoIterator<Item = &'a str>) 
         .map(|(_, name)| name)
 }
 
-/// How the memory that there is compares with what is needed.
+/// How the available memory compares with what is needed.
 fn more_than(available: Option<u64>) -> String {
     match available {
-        Some(available) => format!("and there are {}", bytes(available)),
-        None => "more than this process gets".into(),
+        Some(available) => format!("but only {} are available", bytes(available)),
+        None => "more than this process can get".into(),
     }
 }
 
-/// So many bytes, for a person and exactly.
+/// A number of bytes in binary units, followed by the exact number.
 pub(crate) fn bytes(count: u64) -> String {
     let mut value = count as f64;
     let mut unit = "";
@@ -308,9 +309,9 @@ pub(crate) fn bytes(count: u64) -> String {
     }
 }
 
-/// What is wrong with a scene, and where.
+/// An error in a scene: what is wrong and where.
 ///
-/// Its message starts with the file, and with line and column where the mistake has a place.
+/// The message starts with the file, and with line and column if the error has a place.
 #[derive(Debug, thiserror::Error)]
 #[error("{}{message}", self.whereabouts())]
 pub struct SceneError {
@@ -318,9 +319,9 @@ pub struct SceneError {
     pub path: PathBuf,
     /// What is wrong.
     pub message: String,
-    /// How to mend it.
+    /// How to fix it.
     pub help: String,
-    /// The file's text and the bytes of it that are wrong, where the mistake has a place.
+    /// The file's text and the bytes that are wrong, if the error has a place.
     pub place: Option<Place>,
 }
 
@@ -336,7 +337,7 @@ pub struct Place {
 }
 
 impl Place {
-    /// Line and column of the first byte, both counted from one; the column counts characters.
+    /// Line and column of the first byte, both counted from one. The column counts characters.
     #[must_use]
     pub fn line_column(&self) -> (usize, usize) {
         let mut start = self.span.start.min(self.text.len());

@@ -1,5 +1,5 @@
-//! The kernel's SPIR-V that this build embeds: compiled here (feature `compile-kernel`), or the
-//! committed modules of `spherule-kernel`.
+//! The SPIR-V of the kernel that this build embeds: compiled by this build (feature
+//! `compile-kernel`), or the committed modules of `spherule-kernel`.
 
 use spherule_kernel::Rung;
 use spherule_kernel::precision::Needs;
@@ -26,7 +26,7 @@ pub fn f32() -> Result<Module> {
     embedded("spherule-f32", F32)
 }
 
-/// The module for devices that have 64-bit floats too.
+/// The module for devices that also have 64-bit floats.
 ///
 /// # Errors
 ///
@@ -37,11 +37,11 @@ pub fn f64() -> Result<Module> {
 
 fn embedded(name: &str, bytes: &[u8]) -> Result<Module> {
     let module = Module::from_bytes(name, bytes)?;
-    // SAFETY: rust-gpu compiled it and ran spirv-val on it, and a test holds its bytes to that.
+    // SAFETY: rust-gpu compiled it and ran spirv-val on it, and a test compares its bytes.
     Ok(unsafe { module.trusted() })
 }
 
-/// The module that holds this rung, with the rung fixed: the driver compiles no other.
+/// The module for this rung, with the rung fixed: the driver compiles no other.
 ///
 /// # Errors
 ///

@@ -1,4 +1,5 @@
-//! Vectors as the kernel's [`Lane`]: sixteen numbers of 32 bits, sixteen of 64, and four of 32.
+//! Vectors that implement the kernel's [`Lane`]: sixteen 32-bit floats, sixteen 64-bit floats, and
+//! four 32-bit floats.
 
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
@@ -8,18 +9,18 @@ use fearless_simd::{
 use glam::{Vec3, Vec4};
 use spherule_kernel::lane::{Lane, Lane3};
 
-/// Numbers side by side.
+/// The lanes of a vector.
 pub(crate) const LANES: usize = 16;
 
-/// Sixteen numbers of 32 bits.
+/// Sixteen 32-bit floats.
 #[derive(Clone, Copy)]
 pub(crate) struct Single16<S: Simd>(pub(crate) f32x16<S>);
 
-/// Sixteen numbers of 64 bits: the first eight, the last eight.
+/// Sixteen 64-bit floats: the first eight, then the last eight.
 #[derive(Clone, Copy)]
 pub(crate) struct Double16<S: Simd>(f64x8<S>, f64x8<S>);
 
-/// Of sixteen numbers of 64 bits, which.
+/// A mask of [`Double16`].
 #[derive(Clone, Copy)]
 pub(crate) struct DoubleMask<S: Simd>(mask64x8<S>, mask64x8<S>);
 
@@ -39,7 +40,7 @@ impl<S: Simd> Single16<S> {
         self.0.store_array(values);
     }
 
-    /// The same vector in each lane.
+    /// The same vector in every lane.
     #[inline(always)]
     pub(crate) fn splat3(simd: S, vector: Vec3) -> Lane3<Self> {
         Lane3 {
@@ -57,7 +58,7 @@ impl<S: Simd> Double16<S> {
         Self(all, all)
     }
 
-    /// Of sixteen numbers of 32 bits.
+    /// Widens sixteen 32-bit floats.
     #[inline(always)]
     pub(crate) fn widened(simd: S, values: &[f32; LANES]) -> Self {
         Self(
@@ -66,7 +67,7 @@ impl<S: Simd> Double16<S> {
         )
     }
 
-    /// Rounded to 32 bits.
+    /// Rounds to 32 bits.
     #[inline(always)]
     pub(crate) fn rounded(self) -> Single16<S> {
         Single16(self.0.simd.narrow_f64x8(self.0, self.1))
@@ -74,7 +75,7 @@ impl<S: Simd> Double16<S> {
 }
 
 impl<S: Simd> DoubleMask<S> {
-    /// As the mask of as many numbers of 32 bits.
+    /// The mask for [`Single16`].
     #[inline(always)]
     pub(crate) fn narrowed(self, simd: S) -> mask32x16<S> {
         mask32x16::from_bitmask(simd, self.0.to_bitmask() | self.1.to_bitmask() << 8)
@@ -259,16 +260,16 @@ impl<S: Simd> Lane for Double16<S> {
     }
 }
 
-/// Four numbers of 32 bits, as every processor has them, whatever the instruction set.
+/// Four 32-bit floats, with the instructions that every processor has.
 #[derive(Clone, Copy)]
 pub(crate) struct Four(pub(crate) Vec4);
 
-/// Of four numbers, which.
+/// A mask of [`Four`].
 #[derive(Clone, Copy)]
 pub(crate) struct FourMask(u32);
 
 impl FourMask {
-    /// A bit each, the first the lowest.
+    /// The mask as bits, the first lane lowest.
     #[inline(always)]
     pub(crate) fn bits(self) -> u32 {
         self.0
@@ -371,7 +372,7 @@ mod tests {
     use crate::cpu::InstructionSet;
     use crate::random::Random;
 
-    /// Numbers at which arithmetic turns odd, and ordinary ones.
+    /// Ordinary numbers, and those at which arithmetic has special cases.
     fn numbers(random: &mut Random) -> [f32; LANES] {
         const ODD: [f32; 8] = [
             0.0,
@@ -416,7 +417,8 @@ mod tests {
         ]
     }
 
-    /// With each instruction set of this machine, a lane of a vector has the bits of a single number; NaN is as good as any other.
+    /// With each instruction set of this machine, every lane of a vector has the bits of the same
+    /// operation on single numbers; any NaN equals any other.
     #[test]
     fn lanes_are_single_numbers() {
         #[inline(always)]
@@ -489,7 +491,7 @@ mod tests {
         }
     }
 
-    /// What a GPU without exact quotients needs changes nothing here.
+    /// The corrections for GPUs without exact quotients change nothing here.
     #[test]
     fn quotients_and_roots_are_the_nearest_numbers() {
         let level = Level::baseline();

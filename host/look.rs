@@ -1,5 +1,5 @@
-//! What particles look like: atoms become spheres with the van der Waals radius and the colour of their
-//! element. One scene unit is one ångström.
+//! The look of particles: atoms become spheres with the van der Waals radius and the colour of
+//! their element. One scene unit is one ångström.
 
 use glam::Vec3;
 use rayon::prelude::*;
@@ -24,12 +24,12 @@ pub fn world(atoms: &[Atom]) -> World {
             .filter(|atom| is_unknown(atom.element))
             .count();
         tracing::warn!(
-            "{} of an element that cannot be told: drawn pink, with a radius of {} Å",
+            "{} of unknown element: drawn pink, with a radius of {} Å",
             count_of(unknown, "atom"),
             elements::UNKNOWN.radius
         );
     }
-    // Each element's material has its place among them.
+    // A material's id is the position of its element in the list.
     for element in &elements {
         world.add_material(Material::diffuse(linear(element.color)));
     }
@@ -45,7 +45,8 @@ pub fn world(atoms: &[Atom]) -> World {
     world
 }
 
-/// The elements that occur, in the order in which they do: few, so that looking through them is fastest.
+/// The elements that occur, in the order of their first atoms. They are few, so a linear search is
+/// fastest.
 fn elements_of(atoms: &[Atom]) -> Vec<&'static Element> {
     let add = |mut known: Vec<&'static Element>, element: &'static Element| {
         if !known.iter().any(|other| other.symbol == element.symbol) {
@@ -61,7 +62,7 @@ fn elements_of(atoms: &[Atom]) -> Vec<&'static Element> {
         })
 }
 
-/// From `0xRRGGBB` in sRGB to linear Rec. 709.
+/// Converts `0xRRGGBB` in sRGB to linear Rec. 709.
 fn linear(color: u32) -> Vec3 {
     let channel = |shift: u32| from_srgb(((color >> shift) & 0xff) as f32 / 255.0);
     Vec3::new(channel(16), channel(8), channel(0))

@@ -1,13 +1,15 @@
-//! Memory of the host that may not be there.
+//! Memory of the host that may not be available.
 //!
-//! What grows with a scene or an image is asked for here, and an [`Error::OutOfHostMemory`] says what it was for. What a measurement needs is
-//! compared with what there is before it begins: a system that is out of memory ends the program without a word.
+//! Memory that grows with a scene or an image is allocated here, so that an
+//! [`Error::OutOfHostMemory`] can say what it was for. What a measurement needs is compared with
+//! the available memory before it begins: a system that runs out of memory kills the program
+//! without a message.
 
 use bytemuck::Zeroable;
 
 use crate::error::{Error, Result};
 
-/// The error that says so.
+/// The error of a failed allocation of `needed` bytes.
 pub(crate) fn failed(needed: u64, purpose: &str) -> Error {
     Error::OutOfHostMemory {
         needed,
@@ -16,12 +18,12 @@ pub(crate) fn failed(needed: u64, purpose: &str) -> Error {
     }
 }
 
-/// So many elements, all of them zero. The system gives the memory when it is first written, and so to the
+/// A vector of `count` zeros. The system provides the memory when it is first written, near the
 /// threads that write it.
 ///
 /// # Errors
 ///
-/// [`Error::OutOfHostMemory`] if the host has not that much.
+/// [`Error::OutOfHostMemory`] if the host does not have that much.
 pub(crate) fn zeroed<T: Zeroable>(count: u64, purpose: &str) -> Result<Vec<T>> {
     let failed = || failed(count.saturating_mul(size_of::<T>() as u64), purpose);
     let count = usize::try_from(count).map_err(|_| failed())?;
@@ -29,11 +31,11 @@ pub(crate) fn zeroed<T: Zeroable>(count: u64, purpose: &str) -> Result<Vec<T>> {
     Ok(elements.into_vec())
 }
 
-/// An empty vector with room for so many elements.
+/// An empty vector with room for `count` elements.
 ///
 /// # Errors
 ///
-/// [`Error::OutOfHostMemory`] if the host has not that much.
+/// [`Error::OutOfHostMemory`] if the host does not have that much.
 pub(crate) fn room<T>(count: u64, purpose: &str) -> Result<Vec<T>> {
     let failed = || failed(count.saturating_mul(size_of::<T>() as u64), purpose);
     let mut elements = Vec::new();
@@ -42,16 +44,18 @@ pub(crate) fn room<T>(count: u64, purpose: &str) -> Result<Vec<T>> {
     Ok(elements)
 }
 
-/// Asks for so many bytes and gives them back: what takes them next, and cannot fail, will have them.
+/// Allocates and frees this many bytes, so that a following allocation that cannot fail will
+/// succeed.
 ///
 /// # Errors
 ///
-/// [`Error::OutOfHostMemory`] if the host has not that much.
+/// [`Error::OutOfHostMemory`] if the host does not have that much.
 pub(crate) fn check(bytes: u64, purpose: &str) -> Result<()> {
     room::<u8>(bytes, purpose).map(drop)
 }
 
-/// Refuses what needs more bytes than the system has to give. Where it does not say what it has, nothing is refused.
+/// Fails if `needed` bytes are more than the system has available. If the system does not say what
+/// is available, nothing fails.
 ///
 /// # Errors
 ///
@@ -67,7 +71,7 @@ pub fn require(needed: u64, purpose: &str) -> Result<()> {
     }
 }
 
-/// The bytes that Linux says a new program may take without swapping.
+/// The bytes that, according to Linux, a new program may use without swapping.
 fn available() -> Option<u64> {
     let text = std::fs::read_to_string("/proc/meminfo").ok()?;
     let line = text
@@ -77,8 +81,8 @@ fn available() -> Option<u64> {
     kibibytes.checked_mul(1024)
 }
 
-/// How many bytes this process may use, of addresses (`ulimit -v`) or of memory for data (`ulimit -d`), whichever are fewer; `None`
-/// without a limit.
+/// The bytes that this process may use, of addresses (`ulimit -v`) or of data (`ulimit -d`),
+/// whichever are fewer; `None` without a limit.
 pub(crate) fn limit() -> Option<u64> {
     #[cfg(unix)]
     {
@@ -90,7 +94,8 @@ pub(crate) fn limit() -> Option<u64> {
     None
 }
 
-/// A soft limit of this process, by its number, whose type depends on the system; `None` without one.
+/// A soft limit of this process, by its number, whose type depends on the system; `None` if
+/// unlimited.
 #[cfg(unix)]
 macro_rules! soft_limit {
     ($resource:expr) => {{
@@ -98,9 +103,9 @@ macro_rules! soft_limit {
             rlim_cur: libc::RLIM_INFINITY,
             rlim_max: libc::RLIM_INFINITY,
         };
-        // SAFETY: it writes to the struct that it is given.
-        let asked = unsafe { libc::getrlimit($resource, &raw mut limit) };
-        (asked == 0 && limit.rlim_cur != libc::RLIM_INFINITY).then_some(limit.rlim_cur)
+        // SAFETY: `getrlimit` writes only to the struct that it is given.
+        let status = unsafe { libc::getrlimit($resource, &raw mut limit) };
+        (status == 0 && limit.rlim_cur != libc::RLIM_INFINITY).then_some(limit.rlim_cur)
     }};
 }
 #[cfg(unix)]

@@ -1,6 +1,6 @@
 //! Counts with their nouns.
 
-/// How many there are of something, and the right noun: "1 atom", "2 atoms".
+/// A count with its noun, singular or plural: "1 atom", "2 atoms".
 #[must_use]
 pub fn count_of(count: usize, noun: &str) -> String {
     let plural = if count == 1 { "" } else { "s" };

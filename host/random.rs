@@ -1,4 +1,4 @@
-//! A small generator of repeatable random numbers, for inputs that anybody can make again.
+//! A small generator of repeatable random numbers, for inputs that anybody can generate again.
 
 use glam::Vec3;
 
@@ -8,7 +8,7 @@ use glam::Vec3;
 pub struct Random(u64);
 
 impl Random {
-    /// A stream of its own for each seed.
+    /// A generator with a stream of its own for each seed.
     #[must_use]
     pub fn new(seed: u64) -> Self {
         let mut random = Self(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15));
@@ -26,12 +26,12 @@ impl Random {
         xorshifted.rotate_right((old >> 59) as u32)
     }
 
-    /// Uniform in `low..high`, and `high` itself where the rounding of the sum makes it so.
+    /// Uniform in `low..high`; `high` itself only if the sum is rounded to it.
     pub fn within(&mut self, low: f32, high: f32) -> f32 {
         low + (high - low) * (self.next_u32() >> 8) as f32 / (1 << 24) as f32
     }
 
-    /// Uniform in a cube.
+    /// A point, uniform in the cube from `low` to `high`.
     pub fn vec3(&mut self, low: f32, high: f32) -> Vec3 {
         Vec3::new(
             self.within(low, high),

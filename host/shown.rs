@@ -1,25 +1,25 @@
-//! Texts of unknown origin as a person sees them: names and messages out of files, of drivers, of
-//! the command line.
+//! Makes texts of unknown origin safe to print: names and messages from files, drivers and the
+//! command line.
 
 use std::borrow::Cow;
 
 /// The most characters of a name that are shown.
 const LONGEST: usize = 200;
-/// Of a longer one, so many of its end.
+/// How many of them are from the end, for a longer name.
 const END: usize = 40;
 
-/// A name on one line, which a terminal does nothing about but show it: what would move its cursor,
-/// change its colours or turn the direction of writing is escaped, as in `\u{1b}`. Of a long one
-/// beginning and end are shown, and its length.
+/// A name on one line that is safe in a terminal: characters that would move the cursor, change
+/// colours or turn the direction of writing are escaped, as in `\u{1b}`. A long name is cut to its
+/// beginning and end, with its length between them.
 #[must_use]
 pub fn shown(name: &str) -> Cow<'_, str> {
     shown_up_to(name, LONGEST)
 }
 
-/// [`shown`], with at most so many characters.
+/// [`shown`], with at most `most` characters.
 #[must_use]
 pub fn shown_up_to(text: &str, most: usize) -> Cow<'_, str> {
-    // A character has four bytes at most.
+    // A character has at most four bytes.
     if text.len() > most && text.chars().nth(most).is_some() {
         let end = END.min(most / 2);
         let beginning = text.chars().take(most - end);
@@ -47,14 +47,14 @@ pub fn shown_lines(text: &str) -> String {
     lines.join("\n")
 }
 
-/// [`shown`] for a path, whose bytes need not be text.
+/// [`shown`] for a path, which may not be valid UTF-8.
 #[must_use]
 pub fn shown_path(path: &std::path::Path) -> String {
     shown(&path.to_string_lossy()).into_owned()
 }
 
-/// Whether a character is more than shown: controls, what turns the direction of writing (Unicode
-/// Standard Annex 9), line and paragraph separators, and the tags that nothing shows.
+/// Whether a character must be escaped: controls, characters that turn the direction of writing
+/// (Unicode Standard Annex 9), line and paragraph separators, and invisible tags.
 fn is_escaped(c: char) -> bool {
     c.is_control()
         || matches!(c,

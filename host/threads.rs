@@ -1,7 +1,7 @@
-//! The pool of threads that work on the CPU is done by.
+//! The thread pool that all work on the CPU uses.
 //!
-//! Rayon starts its pool when it is first used, and panics where the system gives it no threads. [`start`] does so before that, and
-//! takes fewer threads where there are fewer.
+//! Rayon starts its pool at the first use, and panics if the system refuses to start threads.
+//! [`start`] starts the pool before that, with fewer threads if necessary.
 
 use std::num::NonZero;
 use std::sync::mpsc;
@@ -9,38 +9,38 @@ use std::sync::mpsc;
 use crate::error::{Error, Result};
 use crate::memory;
 
-/// The most threads, however many processors there are fewer.
+/// The most threads on a machine with few processors.
 const MOST: usize = 64;
-/// The most threads for each processor: beyond that each only takes memory, and time to start.
+/// The most threads for each processor: more only take memory and time to start.
 const MOST_A_PROCESSOR: usize = 4;
-/// What a thread takes of the memory that a process may use: its stack, and what the system puts beside it.
+/// The memory that a thread takes of a process's limit: its stack, and what the system adds.
 const BYTES_A_THREAD: u64 = 3 << 20;
-/// The part of that memory which threads may take.
+/// Threads may take one over this of the process's memory limit.
 const SHARE: u64 = 4;
 
-/// The pool, as it was started.
+/// The thread pool as it was started.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Threads {
-    /// How many threads there are.
+    /// The number of threads.
     pub count: usize,
-    /// How many were wanted: those that were asked for, or else one for each processor.
+    /// The wanted number: the requested one, or one for each processor.
     pub wanted: usize,
-    /// Why there are fewer; `None` if there are not.
+    /// Why there are fewer threads than wanted; `None` if there are not.
     pub fewer: Option<Fewer>,
 }
 
-/// Why there are fewer threads than were wanted.
+/// Why there are fewer threads than wanted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fewer {
-    /// More would only take memory.
+    /// More threads would only take memory.
     Capped,
     /// Their stacks would take more than a quarter of the memory that the process may use.
     Memory,
-    /// The system starts no more of them.
+    /// The system refused to start more.
     System,
 }
 
-/// How many threads are started at most: four for each processor, or 64.
+/// The most threads that are started: four for each processor, or 64 if that is more.
 #[must_use]
 pub fn most() -> usize {
     (MOST_A_PROCESSOR * processors()).max(MOST)
@@ -50,14 +50,14 @@ fn processors() -> usize {
     std::thread::available_parallelism().map_or(1, NonZero::get)
 }
 
-/// Starts the pool of `wanted` threads, or of one for each processor; of fewer where there are to be no more, down to one, which
-/// then is the calling thread.
+/// Starts the pool with `wanted` threads, or with one for each processor; with fewer if there
+/// cannot be as many. A pool of one may be the calling thread.
 ///
-/// A program that does not call this gets rayon's own pool, or that which it has made itself.
+/// A program that does not call this gets rayon's default pool, or the pool that it started itself.
 ///
 /// # Errors
 ///
-/// [`Error::Threads`] if there is a pool already.
+/// [`Error::Threads`] if there is already a pool.
 pub fn start(wanted: Option<NonZero<usize>>) -> Result<Threads> {
     let wanted = wanted.map_or_else(processors, NonZero::get);
     let mut fewer = None;
@@ -73,7 +73,8 @@ pub fn start(wanted: Option<NonZero<usize>>) -> Result<Threads> {
         at_most(most, Fewer::Memory);
     }
 
-    // Rayon's pool cannot be started again where one of its threads cannot. These wait until all of them are there.
+    // Rayon's pool cannot be started again after one of its threads failed to start. So all threads
+    // are started first, and wait.
     let mut waiting = Vec::with_capacity(count);
     while waiting.len() < count {
         let (give, take) = mpsc::channel::<rayon::ThreadBuilder>();
@@ -83,7 +84,7 @@ pub fn start(wanted: Option<NonZero<usize>>) -> Result<Threads> {
             }
         });
         if thread.is_err() {
-            // Others want some of what is left.
+            // Leaves some threads for others.
             waiting.truncate(waiting.len() / 2);
             (count, fewer) = (waiting.len().max(1), Some(Fewer::System));
             break;

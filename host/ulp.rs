@@ -1,7 +1,7 @@
 //! Distances between floats, in units in the last place.
 
-/// How many floats lie between `a` and `b`, one of them counted: 0 where they are equal, 1 where
-/// they are neighbours. Both zeros are the same number.
+/// The distance of `a` and `b` in floats: 0 if they are equal, 1 if they are neighbours. Both zeros
+/// are the same number.
 ///
 /// ```
 /// use spherule::ulp::distance;
@@ -12,7 +12,7 @@
 /// ```
 #[must_use]
 pub fn distance(a: f32, b: f32) -> u32 {
-    // The bits of floats of one sign are in order; fold the negative ones below zero.
+    // The bits of floats of one sign are in order. Negative ones are folded below zero.
     let position = |x: f32| {
         let bits = i64::from(x.to_bits());
         if bits < 1 << 31 {
@@ -25,10 +25,11 @@ pub fn distance(a: f32, b: f32) -> u32 {
     position(a).abs_diff(position(b)) as u32
 }
 
-/// Two floats so far apart have no digit in common: one is four times the other, or more.
+/// Two floats this far apart have no digit in common: one is at least four times the other.
 const NO_DIGIT: u32 = 1 << 24;
 
-/// A [`distance`] in words, which has no meaning as a number where no digit is right; a dash where there is none.
+/// A [`distance`] as text: "no digit" if no digit is right, as the number would then mean nothing;
+/// a dash for `None`.
 ///
 /// ```
 /// use spherule::ulp::{distance, shown};

@@ -686,7 +686,7 @@ fn render_says_what_renders_and_what_was_written() {
     let lines: Vec<&str> = stderr.lines().collect();
     assert_eq!(lines.len(), 2, "{stderr}");
     let before =
-        contains("rendering on CPU, ").and(contains("(asked for), precision robust (within "));
+        contains("rendering on CPU, ").and(contains("(requested), precision robust (within "));
     assert!(before.eval(lines[0]), "{stderr}");
     assert!(lines[1].starts_with("wrote "), "{stderr}");
 }

@@ -26,7 +26,7 @@ pub(super) fn choose_rung(
     if let Some(rung) = asked_for.0 {
         return Chosen {
             rung,
-            why: "asked for".into(),
+            why: "requested".into(),
             warning: None,
         };
     }

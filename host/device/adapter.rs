@@ -1,4 +1,4 @@
-//! Which adapters there are, and which one to use.
+//! Lists adapters and chooses one.
 
 use serde::Serialize;
 
@@ -7,7 +7,7 @@ use crate::error::{Error, Result};
 use crate::memory;
 use crate::shown::shown;
 
-/// What an adapter is and offers.
+/// The properties of an adapter.
 #[derive(Clone, Debug, Serialize)]
 pub struct AdapterReport {
     /// The adapter's name, as its driver gives it.
@@ -18,7 +18,7 @@ pub struct AdapterReport {
     pub api: String,
     /// The driver's name and version.
     pub driver: String,
-    /// Whether SPIR-V reaches the driver as it is, rather than through naga.
+    /// Whether SPIR-V is passed to the driver unchanged, rather than through naga.
     pub passthrough: bool,
     /// Whether kernels may use 64-bit floats.
     pub f64: bool,
@@ -26,7 +26,7 @@ pub struct AdapterReport {
     pub timestamps: bool,
     /// The largest buffer, in bytes.
     pub max_buffer: u64,
-    /// The largest part of a buffer that a kernel sees at once, in bytes.
+    /// The largest part of a buffer that a kernel can bind, in bytes.
     pub max_binding: u64,
     /// The most threads in a workgroup.
     pub max_workgroup: u32,
@@ -63,7 +63,7 @@ impl AdapterReport {
     }
 }
 
-/// Whether the adapter's driver takes SPIR-V as it is.
+/// Whether the adapter's driver takes SPIR-V unchanged.
 pub(super) fn takes_spirv(adapter: &wgpu::Adapter) -> bool {
     adapter.get_info().backend == wgpu::Backend::Vulkan
         && adapter
@@ -83,10 +83,12 @@ fn rank(info: &wgpu::AdapterInfo) -> u32 {
     }
 }
 
-/// What loading drivers takes of a limited memory, in bytes: with less, lavapipe (Mesa 22.3) may read through pointers that it was not given.
+/// The memory, in bytes, that loading drivers takes if memory is limited. With less, lavapipe (Mesa
+/// 22.3) may read through invalid pointers.
 const FOR_DRIVERS: u64 = 480 << 20;
 
-/// An instance with the graphics interfaces of this system; with none where memory is limited (`ulimit -v`, `ulimit -d`) to less than drivers take.
+/// An instance with the graphics interfaces of this system; with none if memory is limited (`ulimit
+/// -v`, `ulimit -d`) to less than drivers take.
 #[must_use]
 pub fn instance() -> wgpu::Instance {
     // No VALIDATION_INDIRECT_CALL: spherule dispatches nothing indirectly, and the check would
@@ -123,7 +125,7 @@ pub fn adapters(instance: &wgpu::Instance) -> Vec<wgpu::Adapter> {
     adapters
 }
 
-/// What every adapter of this system is and offers, the preferred ones first.
+/// The properties of every adapter of this system, the preferred ones first.
 #[must_use]
 pub fn list_adapters() -> Vec<AdapterReport> {
     adapters(&instance())
@@ -132,7 +134,8 @@ pub fn list_adapters() -> Vec<AdapterReport> {
         .collect()
 }
 
-/// What may keep a driver from being loaded or from working, as the end of a sentence: software adapters take half a gigabyte of addresses and more.
+/// If memory is limited, a clause for the end of a message: a driver may fail to load or work
+/// because of it. Software adapters take half a gigabyte of addresses and more.
 pub(super) fn memory_limit() -> String {
     memory::limit().map_or(String::new(), |bytes| {
         format!(
@@ -142,26 +145,28 @@ pub(super) fn memory_limit() -> String {
     })
 }
 
-/// Whether drivers, which start threads of their own, may start none, as the end of a sentence.
+/// If the process can start no more threads, a clause for the end of a message: drivers start
+/// threads of their own.
 pub(super) fn threads_limit() -> &'static str {
     match std::thread::Builder::new().spawn(|| ()) {
         Ok(thread) => {
-            // It does nothing that could panic.
+            // The thread does nothing that could panic.
             let _ = thread.join();
             ""
         }
-        Err(_) => "; the system starts no more threads (ulimit -u), and a driver may need some",
+        Err(_) => "; the system starts no more threads (ulimit -u), and a driver may need threads",
     }
 }
 
-/// The adapter that `choice` means, or `None` for the CPU; with the reason in a few words.
+/// The adapter that `choice` selects, or `None` for the CPU; with the reason in a few words.
 ///
 /// # Errors
 ///
-/// [`Error::NoAdapter`] if a GPU was asked for and there is none, [`Error::NoSuchAdapter`] if there are only others.
+/// [`Error::NoAdapter`] if a GPU was requested and there is no adapter, [`Error::NoSuchAdapter`] if
+/// none has that name.
 pub(super) fn choose(choice: &DeviceChoice) -> Result<(Option<wgpu::Adapter>, String)> {
     if *choice == DeviceChoice::Cpu {
-        return Ok((None, "asked for".into()));
+        return Ok((None, "requested".into()));
     }
     let mut adapters = adapters(&instance());
     let position = match choice {
@@ -181,9 +186,9 @@ pub(super) fn choose(choice: &DeviceChoice) -> Result<(Option<wgpu::Adapter>, St
             let reason = match choice {
                 DeviceChoice::Auto => "the first real GPU",
                 DeviceChoice::Gpu if rank(&adapters[position].get_info()) >= SOFTWARE_RANK => {
-                    "asked for; a software adapter, there is no real GPU"
+                    "requested; a software adapter, as there is no real GPU"
                 }
-                _ => "asked for",
+                _ => "requested",
             };
             Ok((Some(adapters.swap_remove(position)), reason.into()))
         }
@@ -198,7 +203,7 @@ pub(super) fn choose(choice: &DeviceChoice) -> Result<(Option<wgpu::Adapter>, St
                     let name = shown(name).into_owned();
                     return Err(Error::NoSuchAdapter { name, found });
                 }
-                // The name may be right, and its driver is missing.
+                // The name may be right, and only the driver is missing.
                 DeviceChoice::Named(name) => {
                     format!("has a name that contains \"{}\"", shown(name))
                 }

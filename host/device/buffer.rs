@@ -28,19 +28,19 @@ impl<T: Pod> Buffer<T> {
         }
     }
 
-    /// How many elements it holds.
+    /// The number of elements.
     #[must_use]
     pub fn len(&self) -> usize {
         self.len
     }
 
-    /// Whether it holds none.
+    /// Whether it has no elements.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len == 0
     }
 
-    /// The buffer as a kernel's argument.
+    /// The whole buffer as a binding.
     #[must_use]
     pub fn binding(&self) -> Binding<'_> {
         Binding {
@@ -50,9 +50,9 @@ impl<T: Pod> Buffer<T> {
         }
     }
 
-    /// Some of its elements as a kernel's argument. The first must be as many bytes from the start as a multiple of the device's
-    /// `min_storage_buffer_offset_alignment`.
-    /// The range is not empty and does not leave the buffer.
+    /// Some of the buffer's elements as a binding. The offset of the first, in bytes, must be a
+    /// multiple of the device's `min_storage_buffer_offset_alignment`. Panics if the range is empty
+    /// or leaves the buffer.
     #[must_use]
     pub(crate) fn binding_of(&self, range: Range<usize>) -> Binding<'_> {
         assert!(range.start < range.end && range.end <= self.len);
@@ -69,7 +69,7 @@ impl<T: Pod> Buffer<T> {
     }
 }
 
-/// A buffer as a kernel's argument.
+/// A buffer, or a part of one, as a kernel's argument.
 #[derive(Clone, Debug)]
 pub struct Binding<'a> {
     pub(super) resource: wgpu::BindingResource<'a>,
@@ -77,22 +77,23 @@ pub struct Binding<'a> {
     pub(super) owner: Owner,
 }
 
-/// The device that something was made on. wgpu tells devices of one instance apart, and not those of several.
+/// The device that made something. wgpu can tell apart devices of one instance, but not devices of
+/// different instances.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Owner(u64);
 
 impl Owner {
-    /// Of a new device.
+    /// A new owner, different from all others.
     pub(super) fn new() -> Self {
         static NEXT: AtomicU64 = AtomicU64::new(0);
         Self(NEXT.fetch_add(1, Ordering::Relaxed))
     }
 }
 
-/// How a kernel uses a buffer.
+/// How a kernel uses a binding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Access {
-    /// A small constant, in uniform memory.
+    /// A small constant in uniform memory.
     Uniform,
     /// Storage that the kernel only reads.
     Read,

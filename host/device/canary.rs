@@ -1,9 +1,8 @@
-//! The canary's report: what this device does to the arithmetic of the upper rungs, measured
-//! before any of them is trusted.
+//! [`Canary`]: measures on a device the arithmetic that the upper rungs need, before they are used.
 //!
-//! Vulkan promises correctly rounded sums and products, and lets a driver divide with 2.5 units
-//! in the last place of error, flush subnormals, fuse and cancel. What a given driver does is
-//! known only by looking. A rung whose needs are not met on a device is refused there.
+//! Vulkan promises correctly rounded sums and products. It lets a driver divide with an error of
+//! 2.5 units in the last place, flush subnormals, fuse and cancel operations. What a driver really
+//! does can only be measured. A rung is refused on a device that does not meet its needs.
 
 use serde::Serialize;
 use spherule_kernel::Rung;
@@ -16,27 +15,27 @@ use crate::kernel_module;
 use crate::random::Random;
 use crate::ulp;
 
-/// How many pairs of numbers are tried.
+/// The number of operand pairs that are tried.
 const COUNT: usize = 1 << 14;
 
-/// A count of what was right, out of how many.
+/// How many of the tried results are exact.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Share {
-    /// How many were right.
+    /// How many were exact.
     pub exact: usize,
     /// How many were tried.
     pub tried: usize,
 }
 
 impl Share {
-    /// Whether all were right, and there were any.
+    /// Whether all are exact, and there is at least one.
     #[must_use]
     pub fn is_whole(self) -> bool {
         self.tried > 0 && self.exact == self.tried
     }
 }
 
-/// What a device does.
+/// What the canary found on a device.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Canary {
     /// Sums and differences whose error term is exact.
@@ -45,25 +44,25 @@ pub struct Canary {
     pub products: Share,
     /// Splits into exact halves of 12 bits.
     pub splits: Share,
-    /// Quotients rounded correctly.
+    /// Quotients that are rounded correctly.
     pub quotients: Share,
-    /// The worst quotient, in units in the last place.
+    /// The largest error of a quotient, in units in the last place.
     pub quotient_ulps: u32,
-    /// Square roots rounded correctly.
+    /// Square roots that are rounded correctly.
     pub roots: Share,
-    /// The worst square root, in units in the last place.
+    /// The largest error of a square root, in units in the last place.
     pub root_ulps: u32,
-    /// Whether a NaN differs from itself. No rung depends on it: they take a root only where
-    /// comparisons that a NaN fails hold.
+    /// Whether NaN differs from itself. No rung depends on it: they take roots only where
+    /// comparisons hold that fail for NaN.
     pub finds_nan: bool,
-    /// Whether subnormal results survive. No rung depends on it inside its domain.
+    /// Whether subnormal results are kept. No rung depends on it inside its domain.
     pub keeps_subnormals: bool,
-    /// 64-bit results that are those of IEEE 754; `None` without 64-bit floats.
+    /// 64-bit results that conform to IEEE 754; `None` without 64-bit floats.
     pub wide: Option<Share>,
 }
 
 impl Canary {
-    /// Lets the canary sing on `device`.
+    /// Runs the canary on `device`.
     ///
     /// # Errors
     ///
@@ -80,8 +79,8 @@ impl Canary {
         }
     }
 
-    /// Refuses `rung` on this GPU if the canary objects; measures only what the rung needs, which is
-    /// nothing for the lower rungs.
+    /// Fails if the canary objects to `rung` on this GPU. Measures only what the rung needs, which
+    /// is nothing for the lower rungs.
     ///
     /// # Errors
     ///
@@ -94,7 +93,7 @@ impl Canary {
         }
     }
 
-    /// Lets the canary sing on this GPU.
+    /// Runs the canary on this GPU.
     ///
     /// # Errors
     ///
@@ -156,7 +155,7 @@ impl Canary {
                 canary.finds_nan &= outcome.equals_itself == 0;
                 continue;
             }
-            // f64 holds sums of these floats, and all their products, exactly.
+            // f64 holds the sums of these floats, and all their products, exactly.
             let (wide_a, wide_b) = (f64::from(*a), f64::from(*b));
             let holds = |pair: [f32; 2], exact: f64| {
                 pair[0] == exact as f32 && f64::from(pair[0]) + f64::from(pair[1]) == exact
@@ -209,7 +208,7 @@ impl Canary {
         canary
     }
 
-    /// Why `rung` cannot be trusted here; `None` if it can.
+    /// The reason why `rung` cannot be used on this device; `None` if it can.
     #[must_use]
     pub fn objection(&self, rung: Rung) -> Option<String> {
         let broken = |what: &str, share: Share| {
@@ -225,7 +224,7 @@ impl Canary {
                     Some(broken("sums", self.sums))
                 } else if !self.products.is_whole() {
                     Some(broken("products", self.products))
-                // One correction squares the relative error, 2⁻²⁰ at the worst allowed here, and t
+                // One correction squares the relative error, which is at most 2⁻²⁰ here, and t
                 // needs 2⁻²⁶.
                 } else if self.quotient_ulps > 16 || self.root_ulps > 16 {
                     Some(format!(
@@ -251,7 +250,7 @@ impl Canary {
     ///
     /// # Errors
     ///
-    /// [`Error::RungRefused`].
+    /// [`Error::RungRefused`] if there is an objection.
     pub fn require(&self, rung: Rung, device: &str) -> Result<()> {
         match self.objection(rung) {
             None => Ok(()),
@@ -264,8 +263,8 @@ impl Canary {
     }
 }
 
-/// Pairs whose sums need 24 to 48 bits, pairs whose quotients and roots are anything, small
-/// numbers, and NaNs.
+/// Pairs whose sums need 24 to 48 bits, pairs whose quotients and roots are arbitrary, small
+/// numbers, and NaN.
 fn operands() -> Vec<Operands> {
     let mut random = Random::new(0x5eed);
     (0..COUNT)
@@ -319,7 +318,7 @@ mod tests {
         }
     }
 
-    /// The canary must notice each thing that it is there for.
+    /// The canary notices every defect that it is made to find.
     #[test]
     fn a_broken_device_is_noticed() {
         let operands = operands();

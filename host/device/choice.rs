@@ -1,19 +1,19 @@
-//! [`DeviceChoice`]: which device a person wants.
+//! [`DeviceChoice`]: the device that the user wants.
 
 use std::fmt;
 use std::str::FromStr;
 
-/// Which device a person wants.
+/// The device that the user wants.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum DeviceChoice {
     /// A real GPU if there is one, else the CPU. Never a software adapter.
     #[default]
     Auto,
-    /// The best GPU adapter, a software one if there is no other.
+    /// The best GPU adapter; a software adapter if there is no other.
     Gpu,
-    /// The CPU, without touching any graphics driver.
+    /// The CPU. No graphics driver is loaded.
     Cpu,
-    /// The adapter whose name contains this text, whatever the case.
+    /// The adapter whose name contains this text; case is ignored.
     Named(String),
 }
 

@@ -1,8 +1,8 @@
-//! From wgpu's ways of reporting errors to [`Error`].
+//! Turns wgpu's error reports into an [`Error`].
 //!
-//! wgpu reports in four places: error scopes, the uncaptured-error handler (which panics unless
-//! it is replaced), the device-lost callback, and panics of `poll` when the driver loses the
-//! device while it is waited for. [`Watch`] gathers all four.
+//! wgpu reports errors in four places: error scopes, the uncaptured-error handler (which panics
+//! unless it is replaced), the device-lost callback, and panics of `poll` if the driver loses the
+//! device while the host waits. [`Watch`] collects all four.
 
 use std::cell::Cell;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -18,7 +18,7 @@ struct Reported {
     uncaptured: Option<String>,
 }
 
-/// Watches one device.
+/// Collects the errors of one device.
 #[derive(Clone, Debug)]
 pub(super) struct Watch {
     device_name: String,
@@ -26,7 +26,7 @@ pub(super) struct Watch {
 }
 
 impl Watch {
-    /// Takes over the device's error handlers.
+    /// Installs the device's error handlers.
     pub(super) fn over(device: &wgpu::Device, device_name: &str) -> Self {
         let watch = Self {
             device_name: device_name.into(),
@@ -34,7 +34,7 @@ impl Watch {
         };
         let reported = Arc::clone(&watch.reported);
         device.set_device_lost_callback(move |reason, message| {
-            // Called with wgpu's locks held: note it and return.
+            // Called with wgpu's locks held: it only takes a note.
             let message = match reason {
                 wgpu::DeviceLostReason::Destroyed => "it was destroyed".to_owned(),
                 _ if message.is_empty() => "the driver gave no reason".to_owned(),
@@ -64,7 +64,7 @@ impl Watch {
         let validation = pollster::block_on(validation.pop());
         let out_of_memory = pollster::block_on(out_of_memory.pop());
         let internal = pollster::block_on(internal.pop());
-        // What a lost device says of a call, "invalid buffer" and the like, is not the cause.
+        // A lost device's complaint about a call, such as "invalid buffer", is not the cause.
         self.still_there(during)?;
         match out_of_memory.or(validation).or(internal) {
             Some(wgpu::Error::OutOfMemory { .. }) => Err(Error::OutOfMemory {
@@ -79,8 +79,8 @@ impl Watch {
         }
     }
 
-    /// [`Error::DeviceLost`] if the device is gone, [`Error::Validation`] if something was
-    /// reported outside of any scope.
+    /// Fails with [`Error::DeviceLost`] if the device is lost, and with [`Error::Validation`] if an
+    /// error was reported outside of any scope.
     pub(super) fn still_there(&self, during: &str) -> Result<()> {
         let mut reported = lock(&self.reported);
         if let Some(reason) = &reported.lost {
@@ -112,8 +112,8 @@ impl Watch {
         during: &str,
     ) -> Result<()> {
         self.still_there(during)?;
-        // `poll` panics where the driver reports a lost device or no memory; wgpu holds none of
-        // its locks at that point.
+        // `poll` panics if the driver reports a lost device or no memory; wgpu holds none of its
+        // locks at that point.
         let polled = caught(|| {
             device.poll(wgpu::PollType::Wait {
                 submission_index: Some(submission),
@@ -128,7 +128,7 @@ impl Watch {
                 limit,
             }),
             Ok(Err(error)) => {
-                // The submission never reached the device: it was lost before.
+                // The submission never reached the device, which was lost before.
                 self.still_there(during)?;
                 Err(self.lost(during, error.to_string()))
             }
@@ -144,14 +144,15 @@ thread_local! {
     static IS_CATCHING: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Whether this thread is inside a call whose panic is caught and reported as an [`Error`]; a
-/// panic hook can then keep quiet.
+/// Whether this thread is inside a call whose panic will be caught and reported as an [`Error`]. A
+/// panic hook can then stay silent.
 #[must_use]
 pub fn is_catching() -> bool {
     IS_CATCHING.get()
 }
 
-/// Calls what panics on some of its input, and holds no lock where it does; or what the panic said.
+/// Calls `call`, which may panic but must not hold a lock when it does. Returns its result, or the
+/// message of the panic.
 pub(super) fn caught<T>(call: impl FnOnce() -> T) -> Result<T, String> {
     let before = IS_CATCHING.replace(true);
     let done = catch_unwind(AssertUnwindSafe(call));
@@ -169,7 +170,7 @@ fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// wgpu's multi-line errors, with their causes, on one line.
+/// Joins wgpu's multi-line error, with its causes, into one line.
 pub(super) fn one_line(error: &impl ToString) -> String {
     error
         .to_string()

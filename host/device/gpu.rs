@@ -1,4 +1,4 @@
-//! [`Gpu`]: a device that runs kernels, with every failure an [`Error`].
+//! [`Gpu`]: a device that runs kernels; every failure is an [`Error`].
 //!
 //! ```no_run
 //! use spherule::device::{Access, DeviceChoice, Gpu, Module};
@@ -33,12 +33,12 @@ use crate::error::{Error, Result};
 use crate::memory;
 use crate::shown::shown;
 
-/// How a device is opened; for tests and for odd drivers.
+/// How a device is opened; for tests and unusual drivers.
 #[derive(Clone, Debug)]
 pub struct GpuOptions {
-    /// The limits to ask for; `None` asks for all that the adapter has.
+    /// The limits to request; `None` requests all that the adapter has.
     pub limits: Option<wgpu::Limits>,
-    /// Hand kernels to naga even where the driver would take SPIR-V as it is.
+    /// Passes kernels through naga even if the driver takes SPIR-V unchanged.
     pub through_naga: bool,
     /// How long a single launch may take before it counts as hung.
     pub timeout: Duration,
@@ -54,10 +54,10 @@ impl Default for GpuOptions {
     }
 }
 
-/// What one readback moves at most: it takes as much of the host's memory once more.
+/// The most bytes that one readback moves. It needs as much memory on the host, in addition.
 const READBACK_BYTES: usize = 1 << 26;
 
-/// A GPU, or a software stand-in for one, ready to run kernels.
+/// A GPU or a software adapter, ready to run kernels.
 #[derive(Debug)]
 pub struct Gpu {
     device: wgpu::Device,
@@ -66,31 +66,32 @@ pub struct Gpu {
     is_software: bool,
     passthrough: bool,
     timeout: Duration,
-    /// Locked while a launch uses it: there is one pair of timestamps.
+    /// Locked while a launch uses it: there is only one pair of timestamps.
     timer: Option<Mutex<Timer>>,
     watch: Watch,
-    /// What was compiled so far; drivers keep it on disk, for the next process.
+    /// The kernels compiled so far. Drivers cache them on disk, for the next process.
     kernels: Mutex<HashMap<KernelKey, Kernel>>,
-    /// What is made here bears it.
+    /// The mark of everything that this device makes.
     owner: Owner,
 }
 
-/// What a compiled kernel depends on: a digest of the module's words, as they were specialised, whether
-/// the driver takes them unseen, the entry point, and its bindings.
+/// What a compiled kernel depends on: a digest of the module's specialised words, whether they are
+/// passed to the driver unchanged, the entry point, and its bindings.
 type KernelKey = (u64, bool, String, Vec<Access>);
 
 impl Gpu {
-    /// Opens the adapter that `choice` means.
+    /// Opens the adapter that `choice` selects.
     ///
     /// # Errors
     ///
     /// [`Error::NoAdapter`] if there is none ([`DeviceChoice::Auto`] takes no software adapter,
-    /// [`DeviceChoice::Cpu`] no adapter at all), [`Error::NoSuchAdapter`] if none has that name, [`Error::DeviceRefused`] if it does not open.
+    /// [`DeviceChoice::Cpu`] no adapter at all), [`Error::NoSuchAdapter`] if none has that name,
+    /// [`Error::DeviceRefused`] if it does not open.
     pub fn open(choice: &DeviceChoice) -> Result<Self> {
         let (adapter, _) = adapter::choose(choice)?;
         let adapter = adapter.ok_or_else(|| Error::NoAdapter {
             wanted: format!("follows from the choice \"{choice}\""),
-            found: "it means the CPU here".into(),
+            found: "it selects the CPU here".into(),
         })?;
         Self::from_adapter(&adapter, GpuOptions::default())
     }
@@ -150,13 +151,13 @@ impl Gpu {
         &self.name
     }
 
-    /// Whether the adapter is a program on the CPU.
+    /// Whether the adapter is software that runs on the CPU.
     #[must_use]
     pub fn is_software(&self) -> bool {
         self.is_software
     }
 
-    /// Whether SPIR-V reaches the driver as it is, rather than through naga.
+    /// Whether SPIR-V is passed to the driver unchanged, rather than through naga.
     #[must_use]
     pub fn passes_spirv_through(&self) -> bool {
         self.passthrough
@@ -168,34 +169,34 @@ impl Gpu {
         self.device.features().contains(wgpu::Features::SHADER_F64)
     }
 
-    /// What the device can do, as it was opened.
+    /// The limits that the device was opened with.
     #[must_use]
     pub fn limits(&self) -> wgpu::Limits {
         self.device.limits()
     }
 
-    /// Row upon row of workgroups, where they are more than fit one.
+    /// Arranges this many workgroups in rows, if they exceed the device's limit along x.
     #[must_use]
     pub fn rows_of(&self, workgroups: u32) -> [u32; 3] {
         let row = self.limits().max_compute_workgroups_per_dimension.max(1);
         [workgroups.min(row), workgroups.div_ceil(row), 1]
     }
 
-    /// Gives the device up: every later call fails with [`Error::DeviceLost`].
+    /// Destroys the device: every later call fails with [`Error::DeviceLost`].
     pub fn destroy(&self) {
         self.device.destroy();
         // The callback that records the loss runs inside a poll.
         let _ = self.device.poll(wgpu::PollType::Poll);
     }
 
-    /// Compiles an entry point of `module`, unless this device has done so before; `bindings` says how it uses descriptor set 0, from
-    /// binding 0 upwards.
+    /// Compiles an entry point of `module`, or returns it from the cache. `bindings` says how it
+    /// uses descriptor set 0, from binding 0 upwards.
     ///
     /// # Errors
     ///
-    /// [`Error::KernelInvalid`] if there is no such entry point, the device lacks what the
-    /// module needs, or the driver does not take it; [`Error::LaunchLimits`] if a workgroup has
-    /// more threads than the device can run.
+    /// [`Error::KernelInvalid`] if there is no such entry point, the device lacks a feature that
+    /// the module needs, or the driver rejects it; [`Error::LaunchLimits`] if a workgroup has more
+    /// threads than the device can run.
     pub fn kernel(
         &self,
         module: &Module,
@@ -280,7 +281,7 @@ impl Gpu {
                     entry_point: Some(entry_point),
                     compilation_options: wgpu::PipelineCompilationOptions {
                         constants: &[],
-                        // What another kernel left there is not for everybody's.
+                        // Modules of unknown origin must not see what another kernel left there.
                         zero_initialize_workgroup_memory: !module.is_trusted(),
                     },
                     cache: None,
@@ -322,7 +323,7 @@ impl Gpu {
                 workgroup_size: entry.workgroup_size.into(),
             })
             .collect();
-        // SAFETY: the words reach the driver unseen by wgpu; whoever called `Module::trusted`
+        // SAFETY: the words reach the driver unchecked by wgpu; the caller of `Module::trusted`
         // promised that they are valid Vulkan SPIR-V.
         unsafe {
             self.device
@@ -361,8 +362,8 @@ impl Gpu {
             })
     }
 
-    /// Uploads `data` into storage. An empty slice becomes one element all of whose bits are set,
-    /// because there are no empty buffers: a float in it is a NaN, and a sphere in it is missed.
+    /// Uploads `data` into storage. There are no empty buffers, so an empty slice becomes one
+    /// element with all bits set: a float in it is NaN, and every ray misses a sphere in it.
     ///
     /// # Errors
     ///
@@ -371,7 +372,7 @@ impl Gpu {
         self.filled(label, data, wgpu::BufferUsages::STORAGE)
     }
 
-    /// Uploads one value into uniform memory; [`Gpu::update`] changes it.
+    /// Uploads one value into uniform memory. [`Gpu::update`] changes it.
     ///
     /// # Errors
     ///
@@ -398,7 +399,7 @@ impl Gpu {
         })
     }
 
-    /// Storage for `len` elements, all zeros.
+    /// Storage for `len` elements, all zero.
     ///
     /// # Errors
     ///
@@ -406,14 +407,14 @@ impl Gpu {
     pub fn zeroed<T: Pod>(&self, label: &str, len: usize) -> Result<Buffer<T>> {
         let usage = wgpu::BufferUsages::STORAGE;
         let size = self.storage_size::<T>(label, len, usage)?;
-        let during = format!("making room for {label}, {size} bytes");
+        let during = format!("allocating {label}, {size} bytes");
         let raw = self.watch.checked(&self.device, &during, || {
             self.create_buffer(label, size, usage, false)
         })?;
         Ok(Buffer::from_raw(raw, label, self.owner, len))
     }
 
-    /// Makes every byte of `buffer` zero again.
+    /// Sets every byte of `buffer` to zero.
     ///
     /// # Errors
     ///
@@ -442,7 +443,7 @@ impl Gpu {
         tracing::trace!("{during}");
         let (raw, filled) = self.watch.checked(&self.device, &during, || {
             let raw = self.create_buffer(label, size, usage, true);
-            // Where the allocation failed there is nothing to map, and the scope says why.
+            // If the allocation failed, there is nothing to map, and the scope reports why.
             let filled = raw.get_mapped_range_mut(..).map(|mut mapped| {
                 mapped.slice(..bytes.len()).copy_from_slice(bytes);
             });
@@ -473,7 +474,7 @@ impl Gpu {
         })
     }
 
-    /// The bytes that `len` elements take, or an error where that is more than the device has.
+    /// The bytes that `len` elements take; an error if that exceeds the device's limits.
     fn storage_size<T>(&self, label: &str, len: usize, usage: wgpu::BufferUsages) -> Result<u64> {
         let limits = self.device.limits();
         let needed = (size_of::<T>() as u64)
@@ -485,7 +486,7 @@ impl Gpu {
         } else {
             limits.max_storage_buffer_binding_size
         };
-        // What wgpu adds to a size must not leave 64 bits.
+        // Leaves room for what wgpu adds to a size in 64 bits.
         let limit = limits.max_buffer_size.min(binding).min(1 << 62);
         if needed > limit {
             return Err(Error::BufferTooLarge {
@@ -498,13 +499,13 @@ impl Gpu {
         Ok(needed)
     }
 
-    /// Runs `kernel` with these buffers, in the order of its bindings, and waits for it.
+    /// Runs `kernel` with these bindings, in order, and waits for it.
     ///
     /// # Errors
     ///
-    /// [`Error::LaunchLimits`] if there are more workgroups than the device can count;
-    /// [`Error::Validation`] if the buffers do not fit the kernel; [`Error::Timeout`] and
-    /// [`Error::DeviceLost`] as the launch goes.
+    /// [`Error::LaunchLimits`] if there are more workgroups than the device allows;
+    /// [`Error::Validation`] if the bindings do not fit the kernel; [`Error::Timeout`] and
+    /// [`Error::DeviceLost`] if the launch fails.
     pub fn launch(
         &self,
         kernel: &Kernel,
@@ -544,7 +545,7 @@ impl Gpu {
             }
             self.queue.submit([encoder.finish()])
         })?;
-        // Only after a submission that was taken: a mapped buffer must not be written to.
+        // Only after a successful submission: a mapped buffer must not be written to.
         let mapped = timer.map(Timer::map);
         let waited = self
             .watch
@@ -563,14 +564,14 @@ impl Gpu {
         Ok(LaunchTime { device, host })
     }
 
-    /// Refuses what another device made.
+    /// Fails for anything that another device made.
     fn check_owner(&self, owner: Owner, label: &str, during: &str) -> Result<()> {
         if owner == self.owner {
             return Ok(());
         }
         Err(Error::Validation {
             during: during.into(),
-            reason: format!("{label} was made on another device than this {}", self.name),
+            reason: format!("{label} was made on another device, not on {}", self.name),
         })
     }
 
@@ -590,7 +591,7 @@ impl Gpu {
         })
     }
 
-    /// Copies all of `buffer` back to the host.
+    /// Copies all of `buffer` to the host.
     ///
     /// # Errors
     ///
@@ -599,8 +600,7 @@ impl Gpu {
         self.read_first(buffer, buffer.len())
     }
 
-    /// Copies the first `len` elements of `buffer` back to the host; all of them if it holds
-    /// fewer.
+    /// Copies the first `len` elements of `buffer` to the host, or all of them if it has fewer.
     ///
     /// # Errors
     ///
@@ -612,7 +612,7 @@ impl Gpu {
         Ok(elements)
     }
 
-    /// Copies the first elements of `buffer` back to where the host wants them, and no more than it holds.
+    /// Copies the first elements of `buffer` into `elements`, at most as many as it has.
     ///
     /// # Errors
     ///
@@ -622,15 +622,15 @@ impl Gpu {
         self.read_through(&self.staging(buffer, len)?, buffer, elements)
     }
 
-    /// Memory to read so many elements of `buffer` through: asked for before the work, so that what took long is not
-    /// lost for want of it.
+    /// Allocates the memory through which up to `len` elements of `buffer` are read. It is
+    /// allocated before the work, so that results are not lost if there is no memory for it.
     ///
     /// # Errors
     ///
     /// [`Error::OutOfMemory`], [`Error::DeviceLost`].
     pub(crate) fn staging<T: Pod>(&self, buffer: &Buffer<T>, len: usize) -> Result<Staging> {
         let bytes = (len.min(buffer.len()) * size_of::<T>()).min(READBACK_BYTES) as u64;
-        let during = format!("making room to read {} back", buffer.label);
+        let during = format!("allocating memory to read {} back", buffer.label);
         let raw = self.watch.checked(&self.device, &during, || {
             self.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("readback"),
@@ -642,7 +642,7 @@ impl Gpu {
         Ok(Staging(raw))
     }
 
-    /// [`Gpu::read_into`], through memory that is there already.
+    /// [`Gpu::read_into`] through memory that is already allocated.
     ///
     /// # Errors
     ///
@@ -662,7 +662,7 @@ impl Gpu {
         Ok(())
     }
 
-    /// Copies bytes of `buffer` from `offset` on through `staging`.
+    /// Copies bytes of `buffer`, from `offset` on, through `staging`.
     fn read_bytes<T: Pod>(
         &self,
         staging: &wgpu::Buffer,
@@ -688,7 +688,7 @@ impl Gpu {
             .watch
             .wait(&self.device, submission, self.timeout, &during);
         let read = waited.and_then(|()| {
-            // Another thread's poll may be about to say so.
+            // Another thread's poll may be about to send the result.
             match mapped.recv_timeout(self.timeout.min(LATE)) {
                 Ok(Ok(())) => {}
                 Ok(Err(error)) => return Err(failed(error.to_string())),
@@ -700,7 +700,7 @@ impl Gpu {
             bytes.copy_from_slice(&view[..bytes.len()]);
             Ok(())
         });
-        // Also where the mapping did not come in time: the next copy writes to it.
+        // Also if the mapping did not come in time: the next copy writes to it.
         staging.unmap();
         read
     }
@@ -754,20 +754,20 @@ impl Gpu {
     }
 }
 
-/// Holds what is said of a trusted module's bindings against the module, which no one else does.
-fn check_bindings(module: &Module, said: &[Access]) -> Result<(), String> {
+/// Compares the declared bindings of a trusted module with the module. Nothing else checks them.
+fn check_bindings(module: &Module, declared: &[Access]) -> Result<(), String> {
     for (binding, access) in module.bindings() {
-        match said.get(binding as usize) {
-            Some(said) if *said == access => {}
-            Some(said) => {
+        match declared.get(binding as usize) {
+            Some(declared) if *declared == access => {}
+            Some(declared) => {
                 return Err(format!(
-                    "its binding {binding} is {access:?}, and {said:?} was said"
+                    "its binding {binding} is {access:?}, but it was declared {declared:?}"
                 ));
             }
             None => {
                 return Err(format!(
-                    "it has a binding {binding}, and {} were said",
-                    said.len()
+                    "it has a binding {binding}, but only {} were declared",
+                    declared.len()
                 ));
             }
         }
@@ -775,6 +775,6 @@ fn check_bindings(module: &Module, said: &[Access]) -> Result<(), String> {
     Ok(())
 }
 
-/// Memory of the host that a device's buffers are read through.
+/// Host memory through which a device's buffers are read.
 #[derive(Debug)]
 pub(crate) struct Staging(wgpu::Buffer);

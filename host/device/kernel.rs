@@ -1,10 +1,10 @@
-//! [`Kernel`]: an entry point that the driver compiled; [`LaunchTime`]: how long a launch took.
+//! [`Kernel`]: an entry point, compiled by the driver; [`LaunchTime`]: how long a launch took.
 
 use std::time::Duration;
 
 use super::buffer::Owner;
 
-/// An entry point, compiled by the driver. Copies share what was compiled.
+/// An entry point, compiled by the driver. Clones share the compiled code.
 #[derive(Clone, Debug)]
 pub struct Kernel {
     pub(super) name: String,
@@ -31,14 +31,14 @@ impl Kernel {
 /// How long a launch took.
 #[derive(Clone, Copy, Debug)]
 pub struct LaunchTime {
-    /// On the device, between timestamps; `None` where the device has none.
+    /// Time on the device, between timestamps; `None` if the device has none.
     pub device: Option<Duration>,
-    /// On the host, from submitting to knowing that it is done.
+    /// Time on the host, from the submission until it is known to be done.
     pub host: Duration,
 }
 
 impl LaunchTime {
-    /// The device's own time where it is known, else the host's.
+    /// The time on the device if it is known, else the time on the host.
     #[must_use]
     pub fn best(&self) -> Duration {
         self.device.unwrap_or(self.host)

@@ -1,18 +1,18 @@
-//! Device memory that is mapped for the host to read.
+//! Maps device memory for the host to read.
 
 use std::sync::mpsc;
 use std::time::Duration;
 
-/// How long a mapping may be late behind what it waits for.
+/// How long a mapping may take after the submission it follows is done.
 pub(super) const LATE: Duration = Duration::from_secs(5);
 
-/// Starts mapping a whole buffer for reading; the channel tells when it is mapped.
+/// Starts mapping a whole buffer for reading. The channel receives the result.
 pub(super) fn map(
     buffer: &wgpu::Buffer,
 ) -> mpsc::Receiver<std::result::Result<(), wgpu::BufferAsyncError>> {
     let (sender, receiver) = mpsc::channel();
     buffer.map_async(wgpu::MapMode::Read, .., move |result| {
-        // The receiver is gone only where waiting failed, and then nobody wants to know.
+        // The receiver is dropped only if waiting failed; then nobody needs the result.
         let _ = sender.send(result);
     });
     receiver

@@ -1,17 +1,17 @@
-//! Devices: which there are, and running kernels on them.
+//! Devices: lists them and runs kernels on them.
 //!
 //! | module | holds |
 //! | --- | --- |
 //! | [`adapter`] | the list of adapters, and the choice between them |
 //! | [`gpu`] | [`Gpu`]: buffers, kernels and launches on one adapter |
-//! | [`kernel`] | [`Kernel`]: an entry point that the driver compiled |
-//! | `mapping`, `timer` | memory that is mapped for the host to read, and how long a launch took |
+//! | [`kernel`] | [`Kernel`]: an entry point, compiled by the driver |
+//! | `mapping`, `timer` | mapping device memory for the host; the time of a launch |
 //! | [`spirv`] | [`Module`]: SPIR-V, checked and specialised |
 //! | [`buffer`] | [`Buffer`]: device memory |
-//! | [`canary`] | what a device does to the arithmetic that the upper rungs need |
+//! | [`canary`] | measures the arithmetic that the upper rungs need |
 //!
-//! Nothing in here knows of scenes or images. A program with kernels of its own uses it as it
-//! is: see `examples/own-kernel`.
+//! This module knows nothing of scenes and images. A program with kernels of its own can use it:
+//! see `examples/own-kernel`.
 
 #[cfg(feature = "gpu")]
 pub mod adapter;
@@ -51,7 +51,7 @@ pub use kernel::{Kernel, LaunchTime};
 #[cfg(feature = "gpu")]
 pub use spirv::Module;
 
-/// What renders: the CPU, or a GPU.
+/// A device that renders: the CPU or a GPU.
 #[derive(Debug)]
 pub enum Device {
     /// The CPU, on every thread of rayon's pool.
@@ -62,12 +62,13 @@ pub enum Device {
 }
 
 impl Device {
-    /// Opens what `choice` means; also says why it was chosen, in a few words.
+    /// Opens the device that `choice` selects. Also returns the reason for the choice, in a few
+    /// words.
     ///
     /// # Errors
     ///
-    /// The errors of [`Gpu::open`], where a GPU was asked for. [`DeviceChoice::Auto`] never
-    /// fails: a GPU that does not open leaves the CPU.
+    /// The errors of [`Gpu::open`], if a GPU was requested. [`DeviceChoice::Auto`] never fails: if
+    /// a GPU does not open, the CPU is used.
     #[cfg(feature = "gpu")]
     pub fn open(choice: &DeviceChoice) -> Result<(Self, String)> {
         let started = std::time::Instant::now();
@@ -92,11 +93,7 @@ impl Device {
         }
     }
 
-    /// Opens the CPU; also says why it was chosen, in a few words.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::NoAdapter`](crate::Error::NoAdapter) where a GPU was asked for: this build has the feature `gpu` off.
+    /// The device's name for people.
     #[cfg(not(feature = "gpu"))]
     pub fn open(choice: &DeviceChoice) -> Result<(Self, String)> {
         match choice {
@@ -108,8 +105,6 @@ impl Device {
             }),
         }
     }
-
-    /// The device's name for a person.
     #[must_use]
     pub fn name(&self) -> String {
         match self {

@@ -1,8 +1,8 @@
-//! [`Module`]: SPIR-V words, checked for structure, and specialised before a driver sees them.
+//! [`Module`]: SPIR-V words, checked for structure, and specialised before they reach a driver.
 //!
-//! A driver may crash on words that are not a module, and wgpu does not look at what it passes
-//! through, so the structure is checked here: the header, the length of each instruction, and
-//! what the host relies on (entry points, workgroup sizes, specialisation constants).
+//! A driver may crash on words that are not a module, and wgpu does not check what it passes
+//! through. So the structure is checked here: the header, the length of each instruction, and what
+//! the host relies on (entry points, workgroup sizes, specialisation constants).
 
 use std::collections::{HashMap, HashSet};
 use std::fmt;
@@ -76,7 +76,7 @@ impl fmt::Debug for Module {
 }
 
 impl Module {
-    /// Checks `bytes`, a SPIR-V binary in either byte order; `name` is for messages.
+    /// Checks `bytes`, a SPIR-V binary in either byte order. Messages use `name`.
     ///
     /// # Errors
     ///
@@ -165,15 +165,15 @@ impl Module {
         })
     }
 
-    /// Lets the words go to the driver as they are, where it takes SPIR-V. A module that is not
-    /// trusted goes through naga everywhere, which validates it, and which keeps no compensated
-    /// arithmetic.
+    /// Lets the words go to the driver unchanged, if it takes SPIR-V. A module that is not trusted
+    /// always goes through naga, which validates it and does not preserve compensated arithmetic.
     ///
     /// # Safety
     ///
-    /// The words must be valid SPIR-V for Vulkan, as rust-gpu emits it: a driver may do anything with others. Buffers that
-    /// a kernel only reads must be decorated as `NonWritable`, as rust-gpu does: what
-    /// [`Gpu::kernel`](super::Gpu::kernel) is told of them is held against that.
+    /// The words must be valid SPIR-V for Vulkan, as rust-gpu emits it: with other words a driver
+    /// may do anything. Buffers that a kernel only reads must be decorated with `NonWritable`, as
+    /// rust-gpu does: [`Gpu::kernel`](super::Gpu::kernel) compares the declared bindings with the
+    /// decorations.
     #[must_use]
     pub unsafe fn trusted(mut self) -> Self {
         self.is_trusted = true;
@@ -186,7 +186,7 @@ impl Module {
         self.is_trusted
     }
 
-    /// The name given for messages.
+    /// The name for messages.
     #[must_use]
     pub fn name(&self) -> &str {
         &self.name
@@ -210,11 +210,11 @@ impl Module {
         self.needs_f64
     }
 
-    /// The module with the 32-bit specialisation constant `id` fixed to `value`, so that the
-    /// driver folds it and drops what depends on its other values.
+    /// The module with the 32-bit specialisation constant `id` fixed to `value`, so that the driver
+    /// folds it and removes what depends on its other values.
     ///
-    /// The constant's default is patched in the words, because wgpu hands modules to Vulkan
-    /// without any specialisation of its own when it passes them through.
+    /// The constant's default is patched in the words, because wgpu passes modules through to
+    /// Vulkan without specialisation constants.
     ///
     /// # Errors
     ///
@@ -242,7 +242,7 @@ impl Module {
         Ok(self)
     }
 
-    /// What each binding of the module's buffers does, as its variables are decorated, in no order.
+    /// The access of each binding of the module, by the decorations of its variables, in no order.
     pub(super) fn bindings(&self) -> Vec<(u32, Access)> {
         let mut binding_of = HashMap::new();
         let mut are_read = HashSet::new();
@@ -255,7 +255,7 @@ impl Module {
                 (op::DECORATE, [variable, op::DECORATION_NON_WRITABLE]) => {
                     are_read.insert(*variable);
                 }
-                // Decorations stand before variables.
+                // Decorations precede variables.
                 (op::VARIABLE, [_, variable, class, ..]) => {
                     let access = match *class {
                         op::CLASS_UNIFORM => Access::Uniform,
@@ -272,11 +272,13 @@ impl Module {
         found
     }
 
-    /// The module without its other entry points, and without the functions and variables that are theirs
-    /// alone; as it is where it has no such entry point. Drivers compile all that is there, and
-    /// NVIDIA's gives each entry point the workgroup memory of all of them, which it takes from its caches.
+    /// The module without its other entry points, and without the functions and variables that only
+    /// those use; unchanged if it has no such entry point. Drivers compile everything in a module,
+    /// and NVIDIA's gives each entry point the workgroup memory of all of them, which it takes from
+    /// its caches.
     ///
-    /// For what rust-gpu makes: other compilers use instructions that this does not know.
+    /// Only for modules that rust-gpu made: other compilers use instructions that this does not
+    /// know.
     #[must_use]
     pub fn only(&self, entry_point: &str) -> Self {
         let instructions = || Instructions::of(&self.words).flatten();
@@ -309,7 +311,7 @@ impl Module {
                 pointers.extend(function.pointers);
             }
         }
-        // What is left is not called.
+        // The functions that are left are not called.
         let mut dropped: HashSet<u32> = functions
             .into_values()
             .flat_map(|function| function.defines)
@@ -317,7 +319,7 @@ impl Module {
 
         let mut words = self.words[..HEADER_WORDS].to_vec();
         let mut current = 0;
-        // Names and decorations stand before what they are of.
+        // Names and decorations precede what they apply to.
         let is_dropped_variable = |opcode: u32, operands: &[u32]| match (opcode, operands) {
             (op::VARIABLE, [_, id, ..]) => !pointers.contains(id),
             _ => false,
@@ -354,12 +356,12 @@ impl Module {
     }
 }
 
-/// What a function is about.
+/// What `Module::only` needs to know of a function.
 #[derive(Default)]
 struct Function {
     /// The functions that it calls.
     calls: Vec<u32>,
-    /// Where it reads, writes, or looks into, and more that does no harm.
+    /// The ids that it loads from, stores to or indexes into, and harmless others.
     pointers: Vec<u32>,
     /// The results of its instructions.
     defines: Vec<u32>,
@@ -385,7 +387,8 @@ impl Function {
                     self.calls.extend(rest.first());
                     self.pointers.extend(rest);
                 } else {
-                    // Loads, access chains, atomics and array lengths begin with theirs.
+                    // The first operand of loads, access chains, atomics and array lengths is a
+                    // pointer.
                     self.pointers.extend(rest.first());
                 }
             }
@@ -394,7 +397,8 @@ impl Function {
     }
 }
 
-/// Walks the instructions: position, opcode, operands. Ends after the first that does not fit.
+/// Iterates over the instructions: position, opcode, operands. Ends after the first that does not
+/// fit.
 pub(crate) struct Instructions<'a> {
     words: &'a [u32],
     at: usize,
@@ -428,7 +432,7 @@ impl<'a> Iterator for Instructions<'a> {
     }
 }
 
-/// A nul-terminated string in the low-order-first words of an operand.
+/// A nul-terminated string, the first character in the lowest byte of a word.
 fn literal_string(words: &[u32]) -> Option<String> {
     let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
     let end = bytes.iter().position(|byte| *byte == 0)?;

@@ -1,4 +1,4 @@
-//! [`Timer`]: how long a pass took on the device, by timestamp queries.
+//! [`Timer`]: measures a pass on the device with timestamp queries.
 
 use std::sync::mpsc::Receiver;
 use std::time::Duration;
@@ -46,7 +46,7 @@ impl Timer {
         }
     }
 
-    /// What a pass must be told to write the timestamps.
+    /// The timestamp writes to pass to a compute pass.
     pub(super) fn writes(&self) -> wgpu::ComputePassTimestampWrites<'_> {
         wgpu::ComputePassTimestampWrites {
             query_set: &self.queries,
@@ -55,19 +55,19 @@ impl Timer {
         }
     }
 
-    /// Copies the timestamps to where the host can read them, after the pass.
+    /// Copies the timestamps to where the host can read them. To be called after the pass.
     pub(super) fn resolve(&self, encoder: &mut wgpu::CommandEncoder) {
         encoder.resolve_query_set(&self.queries, 0..2, &self.resolved, 0);
         encoder.copy_buffer_to_buffer(&self.resolved, 0, &self.readable, 0, BYTES);
     }
 
-    /// Starts reading, after the pass was submitted.
+    /// Starts reading. To be called after the pass was submitted.
     pub(super) fn map(&self) -> Mapped {
         map(&self.readable)
     }
 
-    /// The time between the timestamps, once the submission is done; `None` if the device did
-    /// not write any.
+    /// The time between the timestamps, once the submission is done; `None` if the device did not
+    /// write them.
     pub(super) fn elapsed(&self, mapped: &Mapped) -> Option<Duration> {
         let is_mapped = matches!(mapped.try_recv(), Ok(Ok(())));
         let view = is_mapped
@@ -77,9 +77,9 @@ impl Timer {
             let ticks: Vec<u64> = bytemuck::pod_collect_to_vec(&view[..]);
             ticks[1].checked_sub(ticks[0])
         });
-        // Also where the mapping did not come in time: the next launch writes to the buffer.
+        // Also if the mapping did not come in time: the next launch writes to the buffer.
         self.readable.unmap();
-        // A driver may write nonsense, which is no time.
+        // A driver may write timestamps that make no valid duration.
         let seconds =
             ticks.filter(|ticks| *ticks > 0)? as f64 * f64::from(self.nanoseconds_per_tick) * 1e-9;
         Duration::try_from_secs_f64(seconds).ok()
