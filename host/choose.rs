@@ -1,14 +1,15 @@
-//! Which rung a scene calls for: the cheapest whose bound keeps the image within a tolerance.
+//! Chooses the rung for a scene: the cheapest whose bound keeps the image within a tolerance.
 //!
-//! `robust` is where it starts, and not `textbook`. On a CPU that takes two to three times as long, because it has none
-//! of robust's loops over many spheres at once. On a GPU that tests every sphere it saves an eighth, and puts a hundred
-//! times as many pixels of a molecule wrong (`docs/numerics.md`).
+//! The choice starts at `robust`, not at `textbook`. On a CPU `textbook` takes two to three times
+//! as long, because it has none of robust's loops over many spheres at once. On a GPU that tests
+//! every sphere it saves an eighth, but gets a hundred times as many pixels of a molecule wrong
+//! (`docs/numerics.md`).
 //!
-//! An error of t does not move a point across the image of a primary ray, but it moves the curve
-//! in which two surfaces meet, and the point that a secondary ray starts from. An error of δt at
-//! distance t is seen, at worst, as a shift of δt/t over the angle of a pixel. For a camera at o
-//! from the centre of a sphere of radius r, and a direction of unit length, the roots have the
-//! product c, so that |q| ≥ √|c|, and t ≥ |c| / (|o| + r). With the unit roundoff u of the rung:
+//! An error of t does not move a point across the image of a primary ray. It moves the curve in
+//! which two surfaces meet, and the point where a secondary ray starts. An error of δt at distance
+//! t is seen, at worst, as a shift of δt/t over the angle of a pixel. For a camera at o from the
+//! centre of a sphere of radius r, and a direction of unit length, the roots have the product c, so
+//! that |q| ≥ √|c|, and t ≥ |c| / (|o| + r). With the unit roundoff u of the rung:
 //!
 //! - `robust`: δt ≤ 8u (o·o + r²) / √|c|, from the cancellation of c; the silhouette shifts by the
 //!   error of the foot, 10u|o|, and by that of o = O − C, u·max(|O|, |C|), seen at distance |o|.
@@ -24,7 +25,7 @@ use spherule_kernel::{Rung, Sphere};
 use crate::scene::Scene;
 use crate::scene::world::GRAIN;
 
-/// The tolerance when nothing is said, in pixels.
+/// The default tolerance, in pixels.
 pub const DEFAULT_TOLERANCE: f64 = 0.1;
 
 /// A rung, and why it was chosen.
@@ -34,15 +35,15 @@ pub struct Choice {
     pub rung: Rung,
     /// The bound of the rung on this scene, in pixels.
     pub bound: f64,
-    /// Whether that is within the tolerance. Where no rung's is, the choice is the most exact one.
+    /// Whether the bound is within the tolerance. If no rung's is, the most exact rung is chosen.
     pub is_within: bool,
-    /// The next cheaper rung and its bound, where there is one: why it was not enough.
+    /// The next cheaper rung, if there is one, and its bound, which was not within the tolerance.
     pub cheaper: Option<(Rung, f64)>,
 }
 
-/// The rungs that are tried before `certified`, the cheapest first. Where `robust` is not enough, most rays need more
-/// digits, and then `double` was cheaper than `certified` on every device that was measured. `compensated`
-/// never is the cheapest.
+/// The rungs that are tried before `certified`, the cheapest first. If `robust` is not enough, most
+/// rays need more digits, and then `double` was cheaper than `certified` on every device that was
+/// measured. `compensated` is never the cheapest.
 fn cheap_rungs(has_f64: bool) -> &'static [Rung] {
     if has_f64 {
         &[Rung::Robust, Rung::Double]
@@ -51,8 +52,8 @@ fn cheap_rungs(has_f64: bool) -> &'static [Rung] {
     }
 }
 
-/// The cheapest rung whose bound is within `tolerance` pixels, for the scene as it is seen, on a
-/// device with or without 64-bit floats; `certified` where there is none.
+/// The cheapest rung whose bound is within `tolerance` pixels for the scene and its camera, on a
+/// device with or without 64-bit floats; `certified` if there is none.
 #[must_use]
 pub fn choose(scene: &Scene, tolerance: f64, has_f64: bool) -> Choice {
     let mut cheaper = None;
@@ -77,7 +78,7 @@ pub fn choose(scene: &Scene, tolerance: f64, has_f64: bool) -> Choice {
     }
 }
 
-/// By how many pixels the rung's errors may move what the scene's image shows, at most.
+/// The most pixels by which the rung's errors may move anything in the scene's image.
 #[must_use]
 pub fn bound(scene: &Scene, rung: Rung) -> f64 {
     let view = scene.view_or_framed();
@@ -171,7 +172,8 @@ mod tests {
         assert_eq!(choose(&touching, 1e9, false).rung, Rung::Certified);
     }
 
-    /// Where pixels are smaller than the roundings of a ray, no rung is enough, and the choice says so.
+    /// If pixels are smaller than the rounding errors of a ray, no rung is within the tolerance,
+    /// and the choice says so.
     #[test]
     fn no_rung_is_within_less_than_a_ray_can_tell() {
         let mut telescope = scene(Sphere::new(Vec3::new(0.0, 0.0, -1e4), 0.5), Vec3::ZERO);

@@ -1,5 +1,5 @@
-//! Puts the kernel's questions to a device, GPU or CPU alike: many at once, each by the function
-//! that the renderer calls.
+//! Runs functions of the kernel on a device, GPU or CPU alike, many inputs at once; they are the
+//! functions that the renderer calls.
 
 use bytemuck::Pod;
 use rayon::prelude::*;
@@ -12,7 +12,7 @@ use crate::device::{Access, Binding, Device, Gpu};
 use crate::error::Result;
 use crate::kernel_module;
 
-/// How often [`walks`] reflects a path; the entry point says the same.
+/// How often [`walks`] reflects a path; the entry point uses the same number.
 const WALK: u32 = 1000;
 
 /// The nearest hit of each ray among `spheres`.
@@ -61,7 +61,7 @@ pub fn occluded(
     }
 }
 
-/// The surface where ray i has parameter i on sphere i.
+/// The surface of sphere i at parameter i on ray i.
 ///
 /// # Errors
 ///
@@ -103,7 +103,7 @@ pub fn surfaces(
     }
 }
 
-/// What becomes of light at each boundary.
+/// The reflected and transmitted light at each boundary.
 ///
 /// # Errors
 ///
@@ -120,7 +120,8 @@ pub fn fresnel(device: &Device, incidences: &[Incidence]) -> Result<Vec<Fresnel>
     }
 }
 
-/// Each ray let into its sphere, of its refractive index, reflected a thousand times, and let out.
+/// Walks of rays that each enter their sphere of this refractive index, are reflected a thousand
+/// times, and leave.
 ///
 /// # Errors
 ///
@@ -148,7 +149,7 @@ pub fn walks(
     }
 }
 
-/// Runs an entry point of one thread an element, which writes `each` results.
+/// Runs an entry point with one thread for each element, which writes `each` results.
 fn launch<T: Pod>(
     gpu: &Gpu,
     rung: Rung,

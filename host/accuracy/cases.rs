@@ -1,8 +1,8 @@
-//! The hard cases: named inputs on which ray tracers of spheres go wrong, each with the answer
-//! that exact arithmetic gives.
+//! The hard cases: named inputs on which ray tracers of spheres go wrong, each with the answer of
+//! exact arithmetic.
 //!
-//! Numbers are those of the catalogue in `docs/numerics.md`. Which rungs promise a case is part of
-//! it: the lower ones exist to show what goes wrong.
+//! The numbers are those of the catalogue in `docs/numerics.md`. Each case lists the rungs that
+//! promise it: the lower rungs show what goes wrong without the promise.
 
 use glam::Vec3;
 use serde::Serialize;
@@ -15,7 +15,7 @@ use crate::error::Result;
 use crate::random::Random;
 use crate::ulp;
 
-/// A ray and a sphere, and what must come out.
+/// A ray and a sphere, and the answer that is required.
 #[derive(Clone, Copy, Debug)]
 struct Probe {
     ray: Ray,
@@ -25,13 +25,13 @@ struct Probe {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Must {
-    /// What the oracle says: a miss, or a hit within this many units in the last place.
+    /// The oracle's answer: a miss, or a hit within this many units in the last place.
     BeTrue(u32),
     /// A miss.
     Miss,
-    /// A hit or a miss, and no NaN.
+    /// A hit or a miss, but not NaN.
     BeDefined,
-    /// The very bits that the probe before gave, times this power of two.
+    /// The bits of the previous probe's answer, times this power of two.
     EqualLastTimes(f32),
 }
 
@@ -46,7 +46,7 @@ pub struct Case {
     promised_by: &'static [Rung],
 }
 
-/// How a rung does on a case.
+/// A rung's result on a case.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case", tag = "verdict", content = "example")]
 pub enum Verdict {
@@ -59,7 +59,7 @@ pub enum Verdict {
 }
 
 impl Verdict {
-    /// The verdict on what is wrong, if anything, with or without a promise.
+    /// The verdict for `wrong`, which says what is wrong, if anything.
     #[must_use]
     pub fn of(wrong: Option<String>, promised: bool) -> Self {
         match wrong {
@@ -86,7 +86,7 @@ impl Case {
         self.probes.iter().map(|probe| (probe.ray, probe.sphere))
     }
 
-    /// How `rung` does on this case on `device`.
+    /// The verdict on `rung` for this case on `device`.
     ///
     /// # Errors
     ///
@@ -106,14 +106,14 @@ impl Case {
 }
 
 impl Probe {
-    /// What is wrong with an answer, with the input as hex floats' bits.
+    /// What is wrong with an answer, if anything, with the bits of the input's floats.
     fn objection(&self, found: f32, last: f32) -> Option<String> {
         let truth =
             || Intersection::of(&self.ray, &self.sphere).and_then(|exact| exact.nearest(&self.ray));
         let said = |t: Option<f32>| t.map_or("a miss".to_owned(), |t| format!("t = {t:e}"));
         let answer = (found < Hit::NONE_T).then_some(found);
         let complaint = match self.must {
-            _ if found.is_nan() => Some("a NaN".to_owned()),
+            _ if found.is_nan() => Some("NaN".to_owned()),
             Must::BeDefined => None,
             Must::Miss => answer.map(|_| format!("{}, must miss", said(answer))),
             Must::BeTrue(tolerance) => {
@@ -189,7 +189,7 @@ fn ray(origin: Vec3, direction: Vec3) -> Ray {
     Ray::new(origin, direction)
 }
 
-/// The cases that a single ray and a single sphere decide.
+/// The cases with a single ray and a single sphere.
 #[must_use]
 pub fn catalogue() -> Vec<Case> {
     let mut cases = Vec::new();
@@ -349,7 +349,7 @@ pub fn catalogue() -> Vec<Case> {
         };
         let leaving = surface.leave(away);
         probes = probes.add(Must::Miss, leaving, sphere.center(), sphere.radius());
-        // Bounded: the start is within a few thousandths of a per mille of what it leaves.
+        // The start stays within 1e-5 of the sphere's distance and radius.
         let shift = (leaving.origin - surface.point).length();
         let bounded = shift <= 1e-5 * (sphere.center().length() + sphere.radius());
         probes_small = probes_small.add(
@@ -394,7 +394,7 @@ pub fn catalogue() -> Vec<Case> {
     }
     cases.push(probes.case(17, "sphere wholly behind", ALL));
 
-    // t = 2 and t = 4, exactly.
+    // The roots are t = 2 and t = 4, exactly.
     let mut probes = Probes::new();
     for (t_min, t_max) in [
         (0.0, 2.0_f32),
@@ -412,7 +412,7 @@ pub fn catalogue() -> Vec<Case> {
             1.0,
         );
     }
-    // t = −4 and t = −2, exactly.
+    // The roots are t = −4 and t = −2, exactly.
     for (t_min, t_max) in [
         (-5.0, 0.0_f32),
         (-4.0, -2.0),

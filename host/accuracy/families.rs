@@ -10,9 +10,9 @@ use crate::random::Random;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Family {
-    /// Spheres of radius 0.1 to 2 in a room of side 20; half of the rays aim at theirs.
+    /// Spheres of radius 0.1 to 2 in a room of side 20; half of the rays aim at their sphere.
     Generic,
-    /// Spheres 10² to 10⁵ of their radii away.
+    /// Spheres at a distance of 10² to 10⁵ radii.
     Far,
     /// A camera 0.1 to 10 above a ground sphere of radius 10³ to 6·10⁶.
     Ground,
@@ -35,7 +35,7 @@ impl Family {
         Self::Inside,
     ];
 
-    /// Its name, as tables and the command line have it.
+    /// The family's name in tables and on the command line.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -48,7 +48,7 @@ impl Family {
         }
     }
 
-    /// `count` rays, each with its sphere; the same ones for the same seed.
+    /// `count` rays, each with its sphere; the same for the same seed.
     #[must_use]
     pub fn sample(self, seed: u64, count: usize) -> Vec<(Ray, Sphere)> {
         let mut random = Random::new(seed);
@@ -72,7 +72,7 @@ impl Family {
                 let sphere = Sphere::new(random.vec3(-10.0, 10.0), random.log_within(0.01, 1.0));
                 let distance = sphere.radius() * random.log_within(1e2, 1e5);
                 let origin = sphere.center() + random.unit_vec3() * distance;
-                // Up to a tenth beyond the silhouette.
+                // The aim is up to a tenth beyond the silhouette.
                 let aim = sphere.center() + random.unit_vec3() * (1.1 * sphere.radius());
                 (Ray::new(origin, (aim - origin) / distance), sphere)
             }

@@ -1,4 +1,4 @@
-//! What each rung costs and gets right in a whole frame of a scene.
+//! Measures for each rung the time and the errors of a whole frame of a scene.
 
 use serde::Serialize;
 use spherule_kernel::{Effects, Pixel, Rung, Shading};
@@ -15,27 +15,27 @@ use crate::scene::Scene;
 /// How often each rung renders the frame; the rungs take turns.
 const ROUNDS: usize = 7;
 
-/// A frame on one rung.
+/// The measurements of a frame on one rung.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Frame {
     /// The rung.
     pub rung: &'static str,
-    /// The median time of tracing, in milliseconds: the device's own where it can be measured.
+    /// The median time of tracing, in milliseconds; on the device if it can measure it.
     pub milliseconds: f64,
-    /// The fastest run.
+    /// The fastest run, in milliseconds.
     pub fastest: f64,
-    /// The slowest run.
+    /// The slowest run, in milliseconds.
     pub slowest: f64,
     /// Pixels that differ from the reference by more than two 255ths, or hit where it misses.
     pub differing: usize,
-    /// How many pixels there are.
+    /// The number of pixels.
     pub pixels: usize,
     /// The mean ꟻLIP against the reference.
     pub flip: f64,
 }
 
-/// Renders `scene` on `device` on each of `rungs`; the reference is what the CPU renders on the
-/// highest rung.
+/// Renders `scene` on `device` on each of `rungs`. The reference is the CPU's image on the highest
+/// rung.
 ///
 /// # Errors
 ///
@@ -49,7 +49,7 @@ pub fn measure(
     let settings = |rung| Settings {
         shading: Shading::Lit,
         rung,
-        // One ray a pixel, whatever the scene calls for.
+        // One ray a pixel, whatever effects the scene calls for.
         effects: EffectChoice::Only(Effects::NONE),
         ..Settings::default()
     };

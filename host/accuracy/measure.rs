@@ -1,4 +1,4 @@
-//! How far a rung's answers are from the truth, on one family of rays and one device.
+//! Measures the errors of a rung on one family of rays and one device.
 
 use std::fmt;
 
@@ -17,30 +17,31 @@ use crate::kernel_module;
 use crate::random::Random;
 use crate::ulp;
 
-/// What was measured.
+/// The errors of a rung.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Measured {
-    /// How many rays there were.
+    /// The number of rays.
     pub rays: usize,
-    /// How many of them truly hit.
+    /// The number of rays that truly hit.
     pub hits: usize,
-    /// Hits that were reported and are none.
+    /// Reported hits that are misses.
     pub false_hits: usize,
-    /// Hits that were missed.
+    /// Hits that were not reported.
     pub false_misses: usize,
-    /// The largest |Δ| / (a r²) at which a line was put on the wrong side of the silhouette.
+    /// The largest |Δ| / (a r²) of a line that was put on the wrong side of the silhouette.
     pub margin: f64,
-    /// The largest error of t, in units in the last place, over the rays that hit and were said
-    /// to, where |c| ≥ 2⁻²⁰ |o|²; `None` if there is no such ray.
+    /// The largest error of t, in units in the last place, over the true hits that were reported
+    /// and have |c| ≥ 2⁻²⁰ |o|²; `None` without such a hit.
     pub max_ulp: Option<u32>,
-    /// The same over all rays that hit and were said to.
+    /// The largest error of t, in units in the last place, over all true hits that were reported;
+    /// `None` without one.
     pub max_ulp_anywhere: Option<u32>,
     /// Hits whose t is off by more than four units in the last place.
     pub over_4_ulp: usize,
     /// The largest angle between the normal at the reported hit and the true one, in degrees.
     pub normal_degrees: f64,
-    /// How many hits are off by how much: the first counts those that are exact, the n-th those off
-    /// by 2ⁿ⁻² up to 2ⁿ⁻¹ − 1 units in the last place (1; 2 and 3; 4 to 7; …).
+    /// The number of hits by error. The first bucket counts exact hits; bucket n counts errors of
+    /// 2ⁿ⁻² to 2ⁿ⁻¹ − 1 units in the last place (1; 2 and 3; 4 to 7; …).
     pub histogram: Vec<usize>,
     /// The ray and the sphere of the largest error.
     pub worst: Option<Worst>,
@@ -49,20 +50,20 @@ pub struct Measured {
 /// How many rays each stage of the certified rung decides.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Escalation {
-    /// Rays, each against its own sphere, that the filter decided.
+    /// Tests, each of a ray with its own sphere, that the filter decided.
     pub filter: usize,
-    /// Those that pairs of floats decided.
+    /// Tests that pairs of floats decided.
     pub pairs: usize,
-    /// Those that needed c to be distilled.
+    /// Tests for which c had to be distilled.
     pub distilled_c: usize,
-    /// Those that needed all of it to be distilled.
+    /// Tests for which everything had to be distilled.
     pub distilled: usize,
-    /// The same four counts with each ray against spheres of other rays, as in a scene.
+    /// The same four counts for tests of each ray with spheres of other rays, as in a scene.
     pub in_a_scene: [usize; 4],
 }
 
 impl Escalation {
-    /// Counts on the CPU; a GPU takes the same decisions up to the rounding of the filter.
+    /// Counts on the CPU. A GPU decides the same way, up to the rounding of the filter.
     #[must_use]
     pub fn of(samples: &[(Ray, Sphere)]) -> Self {
         let mut counts = [0; 4];
@@ -104,7 +105,7 @@ impl fmt::Display for Escalation {
         let [scene_filter, _, scene_c, scene_all] = shares(self.in_a_scene);
         write!(
             f,
-            "certified: of rays against their own spheres the filter decides {filter:.2} %, pairs {pairs:.2} %, pairs with \
+            "certified: of tests of rays with their own spheres the filter decides {filter:.2} %, pairs {pairs:.2} %, pairs with \
              c distilled {distilled_c:.2} %, distillation {distilled:.3} %; against 500 spheres of the family {:.3} % of \
              the tests escalate, {:.4} % to a distillation",
             100.0 - scene_filter,
@@ -120,13 +121,13 @@ pub struct Worst {
     pub ray: [u32; 6],
     /// Centre and radius.
     pub sphere: [u32; 4],
-    /// What the rung said.
+    /// The rung's answer.
     pub found: f32,
-    /// What is true.
+    /// The true answer.
     pub truth: f32,
 }
 
-/// Each ray's answer on this rung and device: the parameter, or [`Hit::NONE_T`].
+/// The answer for each ray on this rung and device: the parameter of the hit, or [`Hit::NONE_T`].
 ///
 /// # Errors
 ///
@@ -144,7 +145,7 @@ pub fn intersect_all(device: &Device, rung: Rung, samples: &[(Ray, Sphere)]) -> 
     }
 }
 
-/// [`intersect_all`] without asking the canary: what the device makes of the rung, right or not.
+/// [`intersect_all`] without the canary's check: the answers of the device, right or wrong.
 ///
 /// # Errors
 ///
@@ -156,7 +157,7 @@ pub fn intersect_on_gpu(gpu: &Gpu, rung: Rung, samples: &[(Ray, Sphere)]) -> Res
         &[Access::Read, Access::Read, Access::ReadWrite],
     )?;
     let mut answers = Vec::with_capacity(samples.len());
-    // Two million rays are 64 MiB, within every device's bindings.
+    // Two million rays are 64 MiB, within every device's limit on bindings.
     for samples in samples.chunks(1 << 21) {
         let (rays, spheres): (Vec<Ray>, Vec<Sphere>) = samples.iter().copied().unzip();
         let output = gpu.zeroed::<f32>("parameters", samples.len())?;
@@ -174,7 +175,7 @@ pub fn intersect_on_gpu(gpu: &Gpu, rung: Rung, samples: &[(Ray, Sphere)]) -> Res
     Ok(answers)
 }
 
-/// Judges the answers of [`intersect_all`].
+/// Judges the answers of [`intersect_all`] by exact arithmetic.
 #[must_use]
 pub fn judge(samples: &[(Ray, Sphere)], answers: &[f32]) -> Measured {
     samples
@@ -188,8 +189,9 @@ pub fn judge(samples: &[(Ray, Sphere)], answers: &[f32]) -> Measured {
 }
 
 impl Measured {
-    /// The error, in units in the last place, that this share of the hits does not exceed; above 1
-    /// rounded up to the end of a bucket of the histogram, or to the largest error. `None` without hits.
+    /// The error, in units in the last place, that this share of the hits does not exceed. Above 1
+    /// it is rounded up to the end of a bucket of the histogram, or to the largest error. `None`
+    /// without hits.
     #[must_use]
     pub fn ulp_at(&self, share: f64) -> Option<u32> {
         let largest = self.max_ulp_anywhere?;
@@ -234,8 +236,8 @@ impl Measured {
             _ => {}
         }
         if says_hit != truth.is_some() {
-            // A line on the right side of the silhouette whose roots were put on the wrong side of
-            // the interval's end says nothing of Δ.
+            // If the line is on the right side of the silhouette, but its roots are on the wrong
+            // side of the interval's end, that says nothing about Δ.
             if let Some(exact) = Intersection::of(ray, sphere)
                 && exact.meets() != says_hit
             {
@@ -308,8 +310,8 @@ fn normal_error(ray: &Ray, sphere: &Sphere, found: f32, truth: f32) -> f64 {
     normal.cross(exact).length().atan2(normal.dot(exact))
 }
 
-/// How many of the rays that leave the reported hits, outwards in a random direction, hit the same
-/// sphere again on this rung and device.
+/// Starts a ray outwards, in a random direction, from every reported hit. Returns how many of them
+/// hit the same sphere again on this rung and device.
 ///
 /// # Errors
 ///
@@ -343,7 +345,7 @@ pub fn self_hits(
     Ok(again.iter().filter(|t| **t < Hit::NONE_T).count())
 }
 
-/// Whether |c| ≥ 2⁻²⁰ |o|²: the origin is not so close to the surface that c loses its digits.
+/// Whether |c| ≥ 2⁻²⁰ |o|²: the origin is far enough from the surface for c to keep its digits.
 fn has_digits_of_c(ray: &Ray, sphere: &Sphere) -> bool {
     let o = ray.origin.as_dvec3() - sphere.center().as_dvec3();
     let oo = o.dot(o);
@@ -357,7 +359,7 @@ mod tests {
     use crate::accuracy::families::Family;
     use spherule_kernel::precision::compensated::Quadratic;
 
-    /// The judge must turn red under each mistake that it is there for.
+    /// The judge finds every mistake that it is made to find.
     #[test]
     fn mistakes_are_found() {
         let samples = Family::Inside.sample(3, 2000);
@@ -395,7 +397,7 @@ mod tests {
         );
     }
 
-    /// The histogram's buckets are wide, and no share of the hits is off by more than all of them.
+    /// The histogram's buckets are wide, but no percentile exceeds the largest error.
     #[test]
     fn a_percentile_is_at_most_the_largest_error() {
         for family in Family::ALL {
@@ -409,7 +411,7 @@ mod tests {
         }
     }
 
-    /// A sign of q swapped: the other root, and the judge sees it.
+    /// If the sign of q is swapped, the other root comes out, and the judge finds it.
     #[test]
     fn a_swapped_root_is_found() {
         let samples = Family::Generic.sample(5, 2000);
@@ -428,7 +430,7 @@ mod tests {
         assert!(judge(&samples, &swapped).max_ulp > Some(1000));
     }
 
-    /// The low part of o deleted: on the ground, where O − C is inexact, the digits are gone.
+    /// If the low part of o is dropped, the digits are lost on the ground, where O − C is inexact.
     #[test]
     fn a_deleted_low_part_is_found() {
         let samples = Family::Ground.sample(6, 2000);

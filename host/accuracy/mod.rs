@@ -1,19 +1,20 @@
-//! How right the rungs of the ladder are: an exact oracle, and the cases that are hard.
+//! Measures how exact the rungs of the ladder are, with an exact oracle and hard cases.
 //!
 //! | module | holds |
 //! | --- | --- |
 //! | [`oracle`] | exact arithmetic that decides hit or miss and rounds t correctly |
 //! | [`cases`] | the hard cases, by number and name |
-//! | [`scene_cases`] | those of them that concern more than one ray and one sphere |
-//! | [`ask`] | the kernel's questions, put to a device |
+//! | [`scene_cases`] | the hard cases with more than one ray or sphere |
+//! | [`ask`] | functions of the kernel, run on a device |
 //! | [`families`] | families of rays, each hard in its own way |
-//! | [`screen`] | 64-bit arithmetic with an error bound, to spare the oracle most of its work |
-//! | [`measure`] | how far a rung's answers are from the truth |
-//! | [`scene_rays`] | the rays of a scene as such a family |
-//! | [`frames`] | what each rung costs and gets right in a whole frame |
-//! | [`samples`] | the error of an image as its samples grow |
-//! | [`price`] | what a rung costs in time |
-//! | [`report`] | accuracy against time, as a page |
+//! | [`screen`] | 64-bit arithmetic with an error bound, which saves most of the oracle's work |
+//! | [`measure`] | the errors of a rung |
+//! | [`choose`] | the choice of the rung for a scene |
+//! | [`scene_rays`] | the rays of a scene as a family |
+//! | [`frames`] | the time and the errors of a whole frame on each rung |
+//! | [`samples`] | the error of an image for more and more samples |
+//! | [`price`] | the time of one intersection on each rung |
+//! | [`report`] | the HTML page of accuracy against time |
 
 pub mod ask;
 pub mod cases;

@@ -1,20 +1,20 @@
 //! The oracle: exact arithmetic that decides every intersection.
 //!
-//! A finite float is an integer times a power of two. With all lengths (origin, centre, radius)
-//! brought to one power of two and the direction to another, o = O − C, a = d·d, b = o·d,
-//! c = o·o − r² and Δ = b² − a c are integers, and whether the line meets the sphere is the sign
-//! of Δ. The roots (−b ± √Δ) / a are irrational in general; they are enclosed between two
-//! fractions by an integer square root, with as many more digits as it takes until both ends
-//! round to the same float. A root that is a float, or half-way between two, would never be
-//! decided that way: it is rational, then Δ is a square, and the root is taken exactly.
+//! A finite float is an integer times a power of two. All lengths (origin, centre, radius) are
+//! brought to one power of two and the direction to another. Then o = O − C, a = d·d, b = o·d, c =
+//! o·o − r² and Δ = b² − a c are integers, and the sign of Δ says whether the line meets the
+//! sphere. The roots (−b ± √Δ) / a are irrational in general. An integer square root encloses them
+//! between two fractions, with more and more digits until both ends round to the same float. A root
+//! that is a float, or half-way between two, would never be decided that way: such a root is
+//! rational, so Δ is a square, and the root is computed exactly.
 //!
-//! num-bigint does the integers: pure Rust, with an integer square root, and fast enough at the
+//! The integers are num-bigint's: pure Rust, with an integer square root, and fast enough for the
 //! few hundred bits that occur here.
 
 use num_bigint::{BigInt, BigUint, Sign};
 use spherule_kernel::{Ray, Sphere};
 
-/// What is true of a line and a sphere.
+/// The exact intersection of a line and a sphere.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Intersection {
     a: BigInt,
@@ -22,16 +22,16 @@ pub struct Intersection {
     c: BigInt,
     discriminant: BigInt,
     radius_squared: BigInt,
-    /// t in scene terms is t in these integers times two to this power.
+    /// t in units of the scene is t in these integers times two to this power.
     exponent: i64,
 }
 
-/// Which of the two roots.
+/// One of the two roots.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Root {
-    /// The smaller one: where the line enters.
+    /// The smaller root, where the line enters.
     Near,
-    /// The larger one: where it leaves.
+    /// The larger root, where the line leaves.
     Far,
 }
 
@@ -78,13 +78,13 @@ impl Intersection {
         })
     }
 
-    /// Whether the line meets the sphere, if only in a point.
+    /// Whether the line meets the sphere, possibly in a single point.
     #[must_use]
     pub fn meets(&self) -> bool {
         self.discriminant.sign() != Sign::Minus
     }
 
-    /// Whether the ray's origin is outside (1), on (0) or inside (−1) of the sphere.
+    /// Whether the ray's origin is outside the sphere (1), on it (0) or inside it (−1).
     #[must_use]
     pub fn side_of_origin(&self) -> i32 {
         sign(&self.c)
@@ -96,8 +96,8 @@ impl Intersection {
         ratio(&self.discriminant, &(&self.a * &self.radius_squared)).abs()
     }
 
-    /// The root, rounded to the nearest float (ties to even); infinite where it is beyond the
-    /// largest. `None` if the line misses.
+    /// The root, rounded to the nearest float (ties to even); infinite if it is beyond the largest
+    /// float. `None` if the line misses.
     #[must_use]
     pub fn root(&self, root: Root) -> Option<f32> {
         if !self.meets() {
@@ -115,7 +115,7 @@ impl Intersection {
         }
         let mut bits = 64_u64;
         loop {
-            // floor(√Δ · 2^bits), below the true value by less than one.
+            // floor(√Δ · 2^bits), less than one below the true value.
             let low = (magnitude << (2 * bits)).sqrt();
             let high = &low + 1_u32;
             let end = |root: BigUint| {
@@ -130,15 +130,16 @@ impl Intersection {
         }
     }
 
-    /// The smaller root in the ray's interval, rounded; `None` if there is none, or if an end of the
-    /// interval is a NaN. The interval is decided on the exact root, where the rungs decide it on the
-    /// rounded one: a root within half a unit in the last place of an end may be told apart.
+    /// The smaller root in the ray's interval, rounded; `None` if there is none, or if an end of
+    /// the interval is NaN. The exact root is compared with the interval, while the rungs compare
+    /// the rounded one: the two may differ for a root within half a unit in the last place of an
+    /// end.
     #[must_use]
     pub fn nearest(&self, ray: &Ray) -> Option<f32> {
         if ray.t_min.is_nan() || ray.t_max.is_nan() {
             return None;
         }
-        // A float's own largest stands for infinity, which no root reaches.
+        // The largest float stands for infinity, which no root reaches.
         let ray = Ray {
             t_min: ray.t_min.clamp(f32::MIN, f32::MAX),
             t_max: ray.t_max.clamp(f32::MIN, f32::MAX),
@@ -168,19 +169,19 @@ impl Intersection {
         let left_squared = &self.discriminant << (2 * scale);
         let right_squared = &right * &right;
         Some(match root {
-            // √Δ against the right side.
+            // Compares √Δ with the right side.
             Root::Far if right.sign() == Sign::Minus => 1,
             Root::Far => order(&left_squared, &right_squared),
-            // −√Δ against it.
+            // Compares −√Δ with the right side.
             Root::Near if right.sign() == Sign::Plus => -1,
             Root::Near => order(&right_squared, &left_squared),
         })
     }
 }
 
-/// Whether light is transmitted that meets a boundary at this cosine, where the refractive index on
-/// its side is `eta` times that on the other: whether η²(1 − cos²) ≤ 1, exactly. False where a
-/// number is not finite.
+/// Whether light is transmitted that meets a boundary at this cosine, if the refractive index on
+/// its side is `eta` times that on the other: whether η²(1 − cos²) ≤ 1, exactly. False if a number
+/// is not finite.
 #[must_use]
 pub fn is_transmitted(cosine: f32, eta: f32) -> bool {
     if !(cosine.is_finite() && eta.is_finite()) {
@@ -188,7 +189,7 @@ pub fn is_transmitted(cosine: f32, eta: f32) -> bool {
     }
     let (c, c_exponent) = decompose(cosine);
     let (e, e_exponent) = decompose(eta);
-    // In units of two to the smaller exponent, all of them: both exponents are at most 104.
+    // Everything in units of two to the smaller exponent; both exponents are at most 104.
     let unit = 2 * c_exponent.min(0);
     let one = BigInt::from(1) << (-unit) as u64;
     let squared_sine = &one - ((&c * &c) << (2 * c_exponent - unit) as u64);
@@ -209,7 +210,7 @@ fn order(a: &BigInt, b: &BigInt) -> i32 {
     sign(&(a - b))
 }
 
-/// The float as an integer times two to a power.
+/// The float as an integer times a power of two.
 fn decompose(x: f32) -> (BigInt, i64) {
     let bits = x.to_bits();
     let exponent = i64::from((bits >> 23) & 0xff);
@@ -252,15 +253,16 @@ fn to_integers(values: &[f32]) -> (Vec<BigInt>, i64) {
     (integers, common)
 }
 
-/// `numerator / denominator · 2^exponent` as the nearest float, ties to even; subnormals and
-/// infinity as IEEE 754 has them.
+/// `numerator / denominator · 2^exponent` as the nearest float, ties to even, with subnormals and
+/// infinity as in IEEE 754.
 fn round(numerator: &BigInt, denominator: &BigInt, exponent: i64) -> f32 {
     let negative = (numerator.sign() == Sign::Minus) != (denominator.sign() == Sign::Minus);
     let (n, d) = (numerator.magnitude(), denominator.magnitude());
     if n.bits() == 0 {
         return 0.0;
     }
-    // The quotient with 26 or 27 bits: 24 for the float, two to round by; what is left is sticky.
+    // The quotient with 26 or 27 bits: 24 for the float and two for rounding; the rest makes the
+    // sticky bit.
     let mut shift = 26 - (n.bits() as i64 - d.bits() as i64);
     // No finer than a quarter of the smallest subnormal.
     shift = shift.min(exponent + 151);
@@ -272,8 +274,9 @@ fn round(numerator: &BigInt, denominator: &BigInt, exponent: i64) -> f32 {
     let quotient = &n / &d;
     let sticky = u64::from(&quotient * &d != n);
     let quotient = quotient.iter_u64_digits().next().unwrap_or(0) << 1 | sticky;
-    // quotient · 2^scale, as an integer of at most 28 bits; f64 holds it exactly, and the one
-    // rounding is the conversion to f32. Powers of two in two steps, as one might overflow.
+    // quotient · 2^scale, as an integer of at most 28 bits. f64 holds it exactly, so the conversion
+    // to f32 is the only rounding. Powers of two are multiplied in two steps, as one might
+    // overflow.
     let scale = exponent - shift - 1;
     if scale > 200 {
         return if negative {
@@ -329,16 +332,17 @@ mod tests {
         assert_eq!(hit.root(Root::Near), Some(2.5));
         assert_eq!(hit.root(Root::Far), Some(3.5));
         assert_eq!(hit.side_of_origin(), 1);
-        // A line through the centre is as far from touching as can be.
+        // A line through the centre has the largest margin.
         assert_eq!(hit.margin(), 1.0);
     }
 
-    /// A line that touches a sphere in rational coordinates, by Pythagoras: 3² + 4² = 5².
+    /// Light is transmitted up to the critical angle.
     #[test]
     fn light_passes_up_to_the_critical_angle() {
-        // No boundary: everything passes. Into a denser medium too.
+        // Without a boundary everything is transmitted, and so is light into a denser medium.
         assert!(is_transmitted(0.0, 1.0) && is_transmitted(1e-30, 0.5));
-        // sin² = 0.64 and 0.36 are just not what floats make of 0.6² and 0.8².
+        // sin² = 0.64 and 0.36 differ slightly from the squares of the floats nearest to 0.8 and
+        // 0.6.
         for (cosine, eta) in [(0.6_f32, 1.25_f32), (0.8, 5.0 / 3.0)] {
             let kappa = 1.0 - f64::from(eta).powi(2) * (1.0 - f64::from(cosine).powi(2));
             assert!(
@@ -351,6 +355,7 @@ mod tests {
         assert!(!is_transmitted(f32::NAN, 1.5));
     }
 
+    /// Lines that touch a sphere in rational coordinates, by Pythagoras: 3² + 4² = 5².
     #[test]
     fn pythagorean_tangents_touch_and_their_neighbours_do_not() {
         for (p, q, r) in [
@@ -358,7 +363,7 @@ mod tests {
             (5.0, 12.0, 13.0),
             (8.0, 15.0, 17.0),
         ] {
-            // The point of contact is (p, q, 0), the direction there is (q, −p, 0).
+            // The point of contact is (p, q, 0), and the direction there is (q, −p, 0).
             let origin = [p - 2.0 * q, q + 2.0 * p, 0.0];
             let touch = line(origin, [q, -p, 0.0], [0.0; 3], r);
             assert!(touch.meets());
@@ -397,21 +402,22 @@ mod tests {
         assert_eq!(round(&big(1), &big(1), -5000), 0.0);
     }
 
-    /// Any finite float that is not absurdly large or small.
+    /// Any finite float that is not extremely large or small.
     fn float() -> impl Strategy<Value = f32> {
         (-1.0_f32..1.0, -20_i32..20).prop_map(|(m, e)| m * 2.0_f32.powi(e))
     }
 
     proptest! {
-        /// The rounding agrees with the hardware's, which divides integers of 24 bits correctly.
+        /// The rounding agrees with that of the hardware, which divides integers of 24 bits
+        /// correctly.
         #[test]
         fn rounding_agrees_with_the_hardware(n in -(1_i32 << 24)..(1 << 24), d in 1_i32..(1 << 24), e in -60_i32..60) {
             let expected = (n as f32 / d as f32) * 2.0_f32.powi(e);
             prop_assert_eq!(round(&BigInt::from(n), &BigInt::from(d), i64::from(e)), expected);
         }
 
-        /// An independent route: integer points on a sphere (x² + y² + z² = r²), seen along
-        /// integer directions from an integer number of steps away, are roots by construction.
+        /// An independent check: integer points on a sphere (x² + y² + z² = r²), seen along integer
+        /// directions from an integer number of steps away, are roots by construction.
         #[test]
         fn integer_points_on_spheres_are_roots(
             quadruple in prop::sample::select(vec![
@@ -433,8 +439,8 @@ mod tests {
             prop_assert!(roots.contains(&Some(steps as f32)), "{:?} {}", roots, steps);
         }
 
-        /// The quadratic has the sign that the root's place demands, at the floats around the root,
-        /// in exact arithmetic.
+        /// The quadratic has the sign that the position of the root demands, at the floats around
+        /// the root, in exact arithmetic.
         #[test]
         fn roots_lie_between_the_floats_around_them(
             o in [float(), float(), float()], d in [float(), float(), float()],
@@ -452,7 +458,7 @@ mod tests {
                 // The exact root is between the half-way points to the neighbours.
                 prop_assert!(hit.compare(root, t.next_down()).expect("a root") >= 0);
                 prop_assert!(hit.compare(root, t.next_up()).expect("a root") <= 0);
-                // At the roots' two sides the quadratic a t² + 2bt + c changes its sign.
+                // The quadratic a t² + 2bt + c changes its sign at a root.
                 let value = |t: f32| {
                     let (m, e) = decompose(t);
                     let e = e - hit.exponent;
@@ -462,7 +468,7 @@ mod tests {
                     sign(&(&hit.a * &m * &m + ((BigInt::from(2) * &hit.b * &m) << down) + (&hit.c << (2 * down))))
                 };
                 let inside = value(t) <= 0 || value(t.next_up()) <= 0 || value(t.next_down()) <= 0;
-                // Unless both roots fall between the same two floats.
+                // Unless both roots are between the same two floats.
                 prop_assert!(inside || hit.root(Root::Near) == hit.root(Root::Far));
             }
         }

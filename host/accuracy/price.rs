@@ -1,4 +1,4 @@
-//! What a rung costs: the time of one intersection, by itself and against the others.
+//! Measures the time of one intersection on each rung.
 
 use std::time::Instant;
 
@@ -16,17 +16,17 @@ use crate::kernel_module;
 pub struct Price {
     /// The median over the runs, in nanoseconds an intersection.
     pub nanoseconds: f64,
-    /// The fastest run.
+    /// The fastest run, in nanoseconds an intersection.
     pub fastest: f64,
-    /// The slowest run.
+    /// The slowest run, in nanoseconds an intersection.
     pub slowest: f64,
 }
 
-/// How often each rung is timed; the rungs take turns, so that a machine whose speed drifts slows
-/// all of them alike.
+/// How often each rung is timed. The rungs take turns, so that a drift of the machine's speed
+/// affects all of them alike.
 const ROUNDS: usize = 7;
 
-/// Times each of `rungs` on `samples`: every ray against a run of spheres, as a renderer does it.
+/// Times each of `rungs` on `samples`: every ray with a list of spheres, as a renderer does.
 ///
 /// # Errors
 ///
@@ -97,7 +97,7 @@ pub fn measure(device: &Device, rungs: &[Rung], samples: &[(Ray, Sphere)]) -> Re
         .collect())
 }
 
-/// Each ray against every sphere, compiled for the rung.
+/// Tests each ray with every sphere, compiled for the rung.
 struct Trace<'a>(&'a [Ray], &'a [Sphere]);
 
 impl OnRung for Trace<'_> {

@@ -1,5 +1,5 @@
-//! The report: accuracy against time as one HTML page that needs nothing else, with its plots as
-//! SVG, for the screen and for print.
+//! The report: accuracy against time as one self-contained HTML page, with its plots as SVG, for
+//! the screen and for print.
 
 use std::fmt::Write;
 
@@ -9,29 +9,29 @@ use super::price::Price;
 use super::samples::Step;
 use crate::ulp;
 
-/// What the page says of one rung on one family.
+/// The results of one rung on one family.
 #[derive(Clone, Copy, Debug)]
 pub struct Row<'a> {
     /// The rung's name.
     pub rung: &'a str,
-    /// What an intersection costs.
+    /// The time of an intersection.
     pub price: Price,
-    /// How right it is.
+    /// The rung's errors.
     pub measured: &'a Measured,
 }
 
-/// What the page says of one family.
+/// The results of one family.
 #[derive(Clone, Debug)]
 pub struct Family<'a> {
-    /// Its name.
+    /// The family's name.
     pub name: &'a str,
-    /// A sentence below its plot.
+    /// A sentence below the plot.
     pub note: String,
-    /// The rungs.
+    /// The results of each rung.
     pub rungs: Vec<Row<'a>>,
 }
 
-/// Colours that stay apart for colour-blind readers and in grey (Okabe and Ito, 2008).
+/// Colours that remain distinct for colour-blind readers and in grey (Okabe and Ito, 2008).
 const COLORS: [&str; 5] = ["#d55e00", "#0072b2", "#cc79a7", "#009e73", "#000000"];
 
 const STYLE: &str = "\
@@ -44,7 +44,8 @@ th{border-bottom:1px solid #999;font-weight:600}td:first-child,th:first-child{te
 code{font-size:.8em}pre{font-size:.75rem;overflow-x:auto;background:#f6f6f6;padding:.7rem}\
 @media print{body{margin:0;max-width:none}section{break-inside:avoid}}";
 
-/// The page. `frames` are those of a scene, by its name, `steps` those of its samples; `table` is all of it as text, for copying.
+/// The page as HTML. `frames` are those of the scene with this name, `steps` those of its samples.
+/// `table` is everything as text, for copying.
 #[must_use]
 pub fn page(
     device: &str,
@@ -65,10 +66,10 @@ pub fn page(
             ".".to_owned()
         } else {
             format!(
-                ", {rays} rays a family, every answer judged by exact arithmetic. Left: the worst error of the \
+                ", {rays} rays a family, every answer judged by exact arithmetic. Left: the largest error of the \
                  distance t against the time of one ray-sphere test; lower and further left is better, a bar goes from \
-                 the fastest round to the slowest, and the dashed line joins the rungs that no other beats in both. Beside a name stand the rays put on the wrong side of a silhouette. Right: \
-                 how the errors of the hits are spread."
+                 the fastest round to the slowest, and the dashed line joins the rungs that no other beats in both. A number beside a name counts the rays that were put on the wrong side of a silhouette. Right: \
+                 the distribution of the errors of the hits."
             )
         },
     );
@@ -76,7 +77,7 @@ pub fn page(
         // Writing to a String cannot fail.
         let _ = writeln!(
             html,
-            "<section><h2>{}</h2><div class=\"plots\"><figure>{}<figcaption>worst error against time</figcaption></figure>\
+            "<section><h2>{}</h2><div class=\"plots\"><figure>{}<figcaption>largest error against time</figcaption></figure>\
              <figure>{}<figcaption>share of the hits by error</figcaption></figure></div>{}<p>{}</p></section>",
             escape(family.name),
             scatter(&family.rungs),
@@ -90,7 +91,7 @@ pub fn page(
             html,
             "<section><h2>Frames of {}</h2><div class=\"plots\"><figure>{}<figcaption>ꟻLIP against the reference, and \
              time</figcaption></figure><figure>{}<figcaption>pixels that differ from the reference, and \
-             time</figcaption></figure></div><p>The reference is what the CPU renders on <code>certified</code>.</p></section>",
+             time</figcaption></figure></div><p>The reference is the CPU's image on <code>certified</code>.</p></section>",
             escape(scene),
             frame_plot(frames, "mean ꟻLIP", |frame| frame.flip),
             frame_plot(frames, "share of the pixels", |frame| {
@@ -122,7 +123,7 @@ const RIGHT: f64 = 96.0;
 const TOP: f64 = 14.0;
 const BOTTOM: f64 = 44.0;
 
-/// Where the plot's own rectangle puts a height from 0 to 1.
+/// The vertical position, in the plot, of a height from 0 to 1.
 fn y_of(height: f64) -> f64 {
     HEIGHT - BOTTOM - height * (HEIGHT - TOP - BOTTOM)
 }
@@ -138,7 +139,7 @@ struct Point {
     height: f64,
 }
 
-/// The worst error of t against the time of a test.
+/// The largest error of t against the time of a test.
 fn scatter(rungs: &[Row<'_>]) -> String {
     // log₂(1 + ulp), from 0 to 32.
     let height = |ulp: f64| (1.0 + ulp).log2() / 32.0;
@@ -174,12 +175,12 @@ fn scatter(rungs: &[Row<'_>]) -> String {
     against_time(
         &points,
         "nanoseconds a test",
-        "worst error of t, ulp",
+        "largest error of t, ulp",
         &ticks,
     )
 }
 
-/// Something of a frame, from 10⁻⁶ to 1, against its time.
+/// A value of a frame, from 10⁻⁶ to 1, against its time.
 fn frame_plot(frames: &[Frame], what: &str, value: impl Fn(&Frame) -> f64) -> String {
     // Zero has a place of its own, below 10⁻⁶.
     let height = |value: f64| {
@@ -210,7 +211,7 @@ fn frame_plot(frames: &[Frame], what: &str, value: impl Fn(&Frame) -> f64) -> St
     against_time(&points, "milliseconds a frame", what, &ticks)
 }
 
-/// The error of images of more and more samples against their time, a line for each rung.
+/// The errors of images with more and more samples against their time, a line for each rung.
 fn step_plot(steps: &[Step]) -> String {
     let mut svg = open_svg("error of the image against time");
     let ends = |value: &dyn Fn(&Step) -> f64| {
@@ -282,7 +283,7 @@ fn step_plot(steps: &[Step]) -> String {
     svg + "</svg>"
 }
 
-/// Points against time, both lower the better, with the line that joins those that no other beats in
+/// Points against time, both lower the better, with the line through those that no other beats in
 /// both.
 fn against_time(points: &[Point], time: &str, what: &str, ticks: &[(&str, f64)]) -> String {
     let fastest = points.iter().map(|p| p.fastest).fold(f64::MAX, f64::min);
@@ -368,10 +369,10 @@ fn against_time(points: &[Point], time: &str, what: &str, ticks: &[(&str, f64)])
 }
 
 /// Writes each label beside its point, whose bar ends at `ends`, at the nearest height at which it
-/// lies on no other.
+/// overlaps no other.
 fn write_labels(svg: &mut String, points: &[Point], places: &[(f64, f64)], ends: &[f64]) {
     const LINE: f64 = 14.0;
-    // Boxes that are taken: left, right and height of the middle. The points themselves are too.
+    // Occupied boxes: left, right and height of the middle. The points themselves count.
     let mut taken: Vec<(f64, f64, f64)> =
         places.iter().map(|(x, y)| (x - 6.0, x + 6.0, *y)).collect();
     for (index, (point, (x0, y0))) in points.iter().zip(places).enumerate() {
@@ -409,7 +410,7 @@ fn write_labels(svg: &mut String, points: &[Point], places: &[(f64, f64)], ends:
 fn histograms(rungs: &[Row<'_>]) -> String {
     let mut svg = open_svg("share of the hits by error in ulp");
     let plot = WIDTH - LEFT - RIGHT;
-    // The share on the vertical axis, logarithmic from a millionth to one.
+    // The vertical axis is the share, logarithmic from a millionth to one.
     let y = |share: f64| {
         HEIGHT - BOTTOM - (1.0 + share.max(1e-6).log10() / 6.0) * (HEIGHT - TOP - BOTTOM)
     };
@@ -463,10 +464,10 @@ fn histograms(rungs: &[Row<'_>]) -> String {
     svg + "</svg>"
 }
 
-/// The inputs of the largest errors, as the bits of their floats.
+/// The inputs with the largest errors, as the bits of their floats.
 fn worst_inputs(rungs: &[Row<'_>]) -> String {
     let mut html = String::from(
-        "<table><tr><th>rung</th><th>worst ulp</th><th>said</th><th>true</th><th>origin</th><th>direction</th><th>centre, radius</th></tr>",
+        "<table><tr><th>rung</th><th>largest ulp</th><th>found</th><th>true</th><th>origin</th><th>direction</th><th>centre, radius</th></tr>",
     );
     for row in rungs {
         let Some(worst) = &row.measured.worst else {

@@ -1,4 +1,4 @@
-//! What accuracy costs in time, for sampling: the error of an image as its samples grow.
+//! Measures the error of an image, and the time, for more and more samples.
 
 use std::time::{Duration, Instant};
 
@@ -14,15 +14,16 @@ use crate::render::{Progress, Settings, render};
 use crate::scene::Scene;
 use crate::scene::limits::MAX_SAMPLES;
 
-/// How many more samples the reference has than the last step.
+/// The reference has this many times the samples of the last step.
 const REFERENCE: u32 = 16;
-/// How many more it has at least, where the time was up before it had all: against fewer an error is that of the reference.
+/// If time runs out, it must still have this many times the samples of a step; with fewer, the
+/// error would be that of the reference.
 pub(crate) const LEAST_REFERENCE: u32 = 8;
-/// The part of the time there is that the reference may take. Where it has all of its samples the steps of three rungs take
-/// a quarter of the whole.
+/// The share of the time that the reference may take. If it gets all of its samples, the steps of
+/// three rungs take a quarter of the whole.
 const SHARE: f64 = 0.7;
 
-/// An image of some samples, against one of many.
+/// The error and the time of an image with some samples, measured against an image with many.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Step {
     /// The rung.
@@ -33,7 +34,7 @@ pub struct Step {
     pub milliseconds: f64,
     /// The root mean square error of the luminance, over the mean luminance of the reference.
     pub error: f64,
-    /// What the render itself estimated of it, without a reference.
+    /// The render's own estimate of the error, without a reference.
     pub estimate: f64,
     /// The mean ꟻLIP against the reference.
     pub flip: f64,
@@ -52,22 +53,23 @@ fn of_reference(most: u32) -> u32 {
     most.saturating_mul(REFERENCE).min(MAX_SAMPLES)
 }
 
-/// The steps, and the image that they are measured against.
+/// The steps, and the samples of their reference.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measured {
     /// Rung by rung, the fewest samples first.
     pub steps: Vec<Step>,
-    /// How many samples the reference has.
+    /// How many samples a pixel the reference has.
     pub reference: u32,
-    /// Whether the time was up before every step was measured.
+    /// Whether time ran out before every step was measured.
     pub is_cut: bool,
 }
 
-/// Renders `scene` on `device` on each of `rungs` with 1, 2, 4, … up to `most` samples. The reference
-/// is of another seed, on the highest of the rungs, with sixteen times as many. All have fewer where they would not be done
-/// at `until`. Where the reference has fewer than eight samples by then there are no steps, because noise would be measured
-/// against noise; else the first is measured in any case. `compiling` is what it took to compile a pipeline before, if
-/// one was.
+/// Renders `scene` on `device` on each of `rungs` with 1, 2, 4, … up to `most` samples. The
+/// reference has another seed and sixteen times as many samples, on the highest of the rungs. All
+/// have fewer samples if they would not be done at `until`. If the reference has fewer than eight
+/// samples by then, there are no steps, because noise would be measured against noise; otherwise
+/// the first step is always measured. `compiling` is the time that compiling a pipeline took
+/// before, if one was compiled.
 ///
 /// # Errors
 ///
@@ -112,7 +114,8 @@ pub fn measure(
             ..Settings::default()
         };
         let mut samples = 1;
-        // By the reference, whose pipeline another rung's is like, and from then on by the step before.
+        // First by the reference, whose pipeline is similar on another rung, then by the step
+        // before.
         let mut expected = compiling.saturating_add(took / reached);
         while samples <= most {
             let is_late = left().is_some_and(|left| left < expected);
@@ -151,7 +154,7 @@ pub fn measure(
     })
 }
 
-/// See [`Step::error`].
+/// Computes [`Step::error`].
 fn error(image: &Image, reference: &Image) -> f64 {
     let (mut squares, mut sum) = (0.0, 0.0);
     for (a, b) in image.pixels().iter().zip(reference.pixels()) {

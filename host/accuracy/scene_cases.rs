@@ -1,5 +1,5 @@
-//! The hard cases that concern more than one ray and one sphere: whole worlds, surfaces, glass,
-//! and what a scene file may say. Numbers are those of the catalogue, as in [`super::cases`].
+//! The hard cases with more than one ray or sphere: whole worlds, surfaces, glass, and what a scene
+//! file may contain. The numbers are those of the catalogue, as in [`super::cases`].
 
 use glam::Vec3;
 use spherule_kernel::material::optics::Incidence;
@@ -15,7 +15,7 @@ use crate::error::Result;
 use crate::random::Random;
 use crate::read::toml;
 
-/// A hard case that is judged by a function of its own.
+/// A hard case that is judged by its own function.
 #[derive(Clone, Copy, Debug)]
 pub struct SceneCase {
     /// Its number in the catalogue.
@@ -23,12 +23,12 @@ pub struct SceneCase {
     /// Its name.
     pub name: &'static str,
     promised_by: &'static [Rung],
-    /// What is wrong, if anything.
+    /// Returns what is wrong, if anything.
     objection: fn(&Device, Rung) -> Result<Option<String>>,
 }
 
 impl SceneCase {
-    /// How `rung` does on this case on `device`.
+    /// The verdict on `rung` for this case on `device`.
     ///
     /// # Errors
     ///
@@ -39,7 +39,7 @@ impl SceneCase {
     }
 }
 
-/// The cases that concern more than one ray and one sphere.
+/// The cases with more than one ray or sphere.
 pub const SCENE_CASES: &[SceneCase] = &[
     SceneCase {
         number: 30,
@@ -111,7 +111,7 @@ fn negative_radius(_: &Device, _: Rung) -> Result<Option<String>> {
     Ok(read.is_ok().then(|| "a scene was read".into()))
 }
 
-/// The ray straight ahead must hit this sphere of the world.
+/// What is wrong if the ray straight ahead does not hit this sphere of the world.
 fn must_hit(device: &Device, rung: Rung, world: &[Sphere], sphere: u32) -> Result<Option<String>> {
     let ray = Ray::new(AHEAD.0, AHEAD.1);
     let found = ask::nearest(device, rung, &[ray], world)?[0];
@@ -133,7 +133,7 @@ fn overlapping(device: &Device, rung: Rung) -> Result<Option<String>> {
     must_hit(device, rung, &[at(-1.0), at(1.0), at(0.5)], 1)
 }
 
-/// Rays that hit spheres far from the origin in the middle.
+/// Rays through the middle of spheres that are far from the origin.
 fn far_hits() -> Vec<(Ray, Sphere)> {
     let mut random = Random::new(36);
     (0..64)
@@ -174,7 +174,7 @@ fn critical_angle(device: &Device, _: Rung) -> Result<Option<String>> {
     let mut random = Random::new(38);
     let mut incidences = Vec::new();
     for index in 0..1000 {
-        // Half of them next to one, where little is left of 1 − η².
+        // Half of them close to one, where little is left of 1 − η².
         let step = if index % 2 == 0 { 2.0 } else { 1e-3 };
         let eta = 1.0 + random.log_within(1e-4 * step, step);
         let critical = (1.0 - 1.0 / (f64::from(eta) * f64::from(eta))).sqrt() as f32;
@@ -209,7 +209,7 @@ fn grazing_fresnel(device: &Device, _: Rung) -> Result<Option<String>> {
             (0.0..=1.0).contains(&share) && (0.0..=1.0 + 1e-6).contains(&found.cosine_transmitted);
         let no_boundary = one.eta != 1.0 || share == 0.0;
         let grazing = one.eta >= 1.0 || one.cosine > 1e-20 || share > 0.999;
-        // Straight on: ((η − 1)/(η + 1))².
+        // At normal incidence: ((η − 1)/(η + 1))².
         let r = f64::from((one.eta - 1.0) / (one.eta + 1.0)).powi(2);
         let normal = one.cosine != 1.0 || (f64::from(share) - r).abs() <= 1e-6 * (1.0 + r);
         (!(defined && no_boundary && grazing && normal)).then(|| format!("{one:?}: {found:?}"))

@@ -1,5 +1,4 @@
-//! The rays of a scene as a family: what its camera sends out, each with the sphere that it
-//! concerns.
+//! The rays of a scene's camera as a family, each with a sphere.
 
 use glam::UVec2;
 use rayon::prelude::*;
@@ -11,16 +10,16 @@ use crate::random::Random;
 use crate::render::whole_image;
 use crate::scene::Scene;
 
-/// The most tests of a ray against a sphere that pairing them may take.
+/// The most tests of rays with spheres that the pairing may take.
 const MAX_TESTS: u64 = 1 << 31;
 
 /// Up to `count` rays through random pixels of the scene, each with the sphere that it hits first,
-/// or else with the one whose silhouette it passes closest, in radii. Worlds of many spheres give
-/// fewer rays, because every sphere is looked at.
+/// or else the one whose silhouette it passes closest, in radii. Worlds with many spheres give
+/// fewer rays, because every sphere is tested.
 ///
 /// # Errors
 ///
-/// [`Error::Scene`](crate::Error::Scene) as rendering the scene would.
+/// [`Error::Scene`](crate::Error::Scene), as rendering the scene would return it.
 pub fn sample(scene: &Scene, seed: u64, count: usize) -> Result<Vec<(Ray, Sphere)>> {
     let launch = whole_image(scene)?;
     let spheres = &scene.world.spheres;
@@ -50,7 +49,7 @@ pub fn sample(scene: &Scene, seed: u64, count: usize) -> Result<Vec<(Ray, Sphere
         .collect())
 }
 
-/// How far the line passes the sphere, in its radii.
+/// The distance of the line from the sphere's centre, in radii.
 fn passing(ray: &Ray, sphere: &Sphere) -> f64 {
     let o = ray.origin.as_dvec3() - sphere.center().as_dvec3();
     let d = ray.direction.as_dvec3().normalize_or_zero();

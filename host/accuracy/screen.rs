@@ -1,11 +1,11 @@
-//! The screen: 64-bit arithmetic with a bound on its error, which decides nearly every
-//! intersection before the oracle has to.
+//! The screen: 64-bit arithmetic with a bound on its error. It decides nearly every intersection,
+//! so that the oracle is rarely needed.
 //!
 //! With v = 2⁻⁵³ and N = |o||d|, forwards through the formulas: each component of o is off by at
-//! most v|o|, of k by 8vN with room to spare, k·k by 32v|k|N + 4v k·k + 300v²N², a r² by 4v a r²,
-//! b by 8vN, c by 8v(o·o + r²). The root of Δ is off by the error of Δ over √Δ as long as that
-//! error is under a quarter of Δ. An answer counts only if both ends of its interval round to
-//! the same float, and lie on the same side of both ends of the ray's interval.
+//! most v|o|, of k by 8vN with room to spare, k·k by 32v|k|N + 4v k·k + 300v²N², a r² by 4v a r², b
+//! by 8vN, c by 8v(o·o + r²). The root of Δ is off by the error of Δ over √Δ as long as that error
+//! is less than a quarter of Δ. An answer counts only if both ends of its interval round to the
+//! same float, and are on the same side of both ends of the ray's interval.
 
 use spherule_kernel::{Ray, Sphere};
 
@@ -14,8 +14,8 @@ use super::oracle::Intersection;
 /// The unit roundoff of 64-bit floats.
 const V: f64 = 1.0 / (1_u64 << 53) as f64;
 
-/// The nearest root in the ray's interval, correctly rounded, or `None` for a miss: by the screen
-/// where it can tell, else by the oracle.
+/// The nearest root in the ray's interval, correctly rounded, or `None` for a miss. The screen
+/// decides if it can, else the oracle.
 #[must_use]
 pub fn nearest(ray: &Ray, sphere: &Sphere) -> Option<f32> {
     match screen(ray, sphere) {
@@ -24,7 +24,7 @@ pub fn nearest(ray: &Ray, sphere: &Sphere) -> Option<f32> {
     }
 }
 
-/// What the screen knows: a hit, a miss, or (the outer `None`) nothing.
+/// The screen's answer: a hit, a miss, or undecided (the outer `None`).
 #[must_use]
 pub fn screen(ray: &Ray, sphere: &Sphere) -> Option<Option<f32>> {
     let o = ray.origin.as_dvec3() - sphere.center().as_dvec3();
@@ -32,7 +32,7 @@ pub fn screen(ray: &Ray, sphere: &Sphere) -> Option<Option<f32>> {
     let r = f64::from(sphere.radius());
     let (a, oo, rr) = (d.dot(d), o.dot(o), r * r);
     let n = (oo * a).sqrt();
-    // Far from the ends of the range, where products would lose their relative errors.
+    // Far from the ends of the range, where products would lose their relative accuracy.
     let sane = |x: f64| x > 1e-200 && x < 1e200;
     if !(sane(a) && sane(rr) && (oo == 0.0 || sane(oo))) {
         return None;
@@ -57,7 +57,7 @@ pub fn screen(ray: &Ray, sphere: &Sphere) -> Option<Option<f32>> {
     let outer_error = outer * (size_error / size + 8.0 * V);
     let inner = c / size;
     let inner_error = c_error / size + inner.abs() * (size_error / size + 4.0 * V);
-    // A sign of b that is not certain swaps the two formulas for the same roots.
+    // If the sign of b is not certain, the two formulas for the roots may be swapped.
     if b.abs() <= 8.0 * V * n && b != 0.0 {
         return None;
     }
@@ -85,7 +85,7 @@ mod tests {
     use super::*;
     use crate::accuracy::families::Family;
 
-    /// Where the screen speaks, the oracle says the same; and it speaks nearly always.
+    /// Whatever the screen decides, the oracle confirms; and the screen decides nearly always.
     #[test]
     fn the_screen_agrees_with_the_oracle() {
         for family in Family::ALL {
@@ -98,7 +98,7 @@ mod tests {
                     assert_eq!(answer, exact, "{}: {ray:?} {sphere:?}", family.name());
                 }
             }
-            // Least on the surface, where c has lost nearly all of its digits.
+            // Least often on the surface, where c has lost nearly all of its digits.
             assert!(spoke * 10 > samples.len() * 7, "{}: {spoke}", family.name());
         }
     }

@@ -64,7 +64,7 @@ pub(crate) fn outputs(folder: &Path) -> Result<Vec<Output>> {
 /// # Errors
 ///
 /// [`Error::OutputRefused`] if two scenes would have one folder.
-#[cfg_attr(not(feature = "cli"), expect(dead_code, reason = "the command asks"))]
+#[cfg_attr(not(feature = "cli"), expect(dead_code, reason = "only the command uses it"))]
 pub(crate) fn folders(folder: &Path, scenes: &[Source]) -> Result<Vec<PathBuf>> {
     if scenes.len() == 1 {
         return Ok(vec![folder.into()]);
