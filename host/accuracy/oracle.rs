@@ -341,8 +341,7 @@ mod tests {
     fn light_passes_up_to_the_critical_angle() {
         // Without a boundary everything is transmitted, and so is light into a denser medium.
         assert!(is_transmitted(0.0, 1.0) && is_transmitted(1e-30, 0.5));
-        // sin² = 0.64 and 0.36 differ slightly from the squares of the floats nearest to 0.8 and
-        // 0.6.
+        // Critical angles, up to the rounding of the floats.
         for (cosine, eta) in [(0.6_f32, 1.25_f32), (0.8, 5.0 / 3.0)] {
             let kappa = 1.0 - f64::from(eta).powi(2) * (1.0 - f64::from(cosine).powi(2));
             assert!(

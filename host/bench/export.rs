@@ -1,13 +1,13 @@
-//! A world, its rays and what they hit, as plain files of 32-bit numbers, lowest byte first.
+//! Writes a world, its rays and their hits as plain files of 32-bit numbers, lowest byte first.
 //!
 //! | file | holds |
 //! | --- | --- |
 //! | `meta.json` | names, counts, the size of the image, the camera |
 //! | `spheres.f32` | x, y, z, r of each sphere |
-//! | `nodes.u32` | the nodes of the tree, 20 numbers each ([`Node`](spherule_kernel::accel::node::Node)); empty without one |
+//! | `nodes.u32` | the nodes of the tree, 20 numbers each ([`Node`](spherule_kernel::accel::node::Node)); empty without a tree |
 //! | `order.u32` | for each sphere in the order of the tree's leaves, its index in `spheres.f32` |
-//! | `KIND.f32` | of each ray its origin, `t_min`, direction, `t_max` |
-//! | `KIND.hits` | of each ray t and the sphere's index (`u32::MAX` for none), or 1 or 0 where any hit would do |
+//! | `KIND.f32` | origin, `t_min`, direction, `t_max` of each ray |
+//! | `KIND.hits` | t and the sphere's index (`u32::MAX` for a miss) of each ray; for kinds that accept any hit, 1 or 0 |
 
 use std::path::{Path, PathBuf};
 
@@ -24,15 +24,15 @@ use crate::trace::CpuTracer;
 use crate::write::Output;
 use crate::write::same::{refuse_clashes, refuse_inputs};
 
-/// Makes `folder` if need be, and checks that files can be made in it.
+/// Creates `folder` if necessary, and checks that files can be created in it.
 ///
 /// # Errors
 ///
-/// [`Error::Output`] if not.
+/// [`Error::Output`] if they cannot.
 pub fn prepare(folder: &Path) -> Result<()> {
     std::fs::create_dir_all(folder).map_err(|error| Error::Output {
         path: folder.into(),
-        reason: format!("cannot be made: {error}"),
+        reason: format!("cannot be created: {error}"),
         help: "name a folder in a directory that may be written".into(),
     })?;
     outputs(folder)?;
@@ -48,7 +48,7 @@ fn names() -> impl Iterator<Item = String> {
     of_scene.into_iter().map(Into::into).chain(of_kinds)
 }
 
-/// The files in `folder`, which is there, as they are before anything is written.
+/// The outputs in the existing `folder`, before anything is written.
 ///
 /// # Errors
 ///
@@ -59,12 +59,15 @@ pub(crate) fn outputs(folder: &Path) -> Result<Vec<Output>> {
         .collect()
 }
 
-/// The folder of each of the scenes: `folder` itself for one, and a folder in it for each of several.
+/// The folder of each scene: `folder` itself for a single scene, else a folder in it for each.
 ///
 /// # Errors
 ///
-/// [`Error::OutputRefused`] if two scenes would have one folder.
-#[cfg_attr(not(feature = "cli"), expect(dead_code, reason = "only the command uses it"))]
+/// [`Error::OutputRefused`] if two scenes would share a folder.
+#[cfg_attr(
+    not(feature = "cli"),
+    expect(dead_code, reason = "only the command uses it")
+)]
 pub(crate) fn folders(folder: &Path, scenes: &[Source]) -> Result<Vec<PathBuf>> {
     if scenes.len() == 1 {
         return Ok(vec![folder.into()]);
@@ -81,19 +84,19 @@ pub(crate) fn folders(folder: &Path, scenes: &[Source]) -> Result<Vec<PathBuf>> 
             return Err(Error::OutputRefused {
                 path: one.clone(),
                 reason: "is the folder of two scenes".into(),
-                help: "give each scene once; files of one name need a run and a folder each".into(),
+                help: "give each scene once; for files with the same name, run the command once for each, with different folders".into(),
             });
         }
     }
     Ok(folders)
 }
 
-/// Writes the files into `folder`, which is there.
+/// Writes the files into the existing `folder`.
 ///
 /// # Errors
 ///
-/// [`Error::Output`] for a file that cannot be written, [`Error::OutputRefused`] for one that the scene was read
-/// from or that is another of them, and as [`whole_image`].
+/// [`Error::Output`] for a file that cannot be written, [`Error::OutputRefused`] for one that the
+/// scene was read from or that is another output, and the errors of [`whole_image`].
 pub fn export(
     folder: &Path,
     name: &str,
@@ -102,7 +105,7 @@ pub fn export(
     tracer: &CpuTracer,
     rung: Rung,
 ) -> Result<()> {
-    // All of them are looked at before any is written.
+    // All of them are checked before any is written.
     let outputs = outputs(folder)?;
     let all: Vec<&Output> = outputs.iter().collect();
     refuse_clashes(&all)?;

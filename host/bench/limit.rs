@@ -1,10 +1,11 @@
-//! [`Limit`]: what a device does at most, measured, and how much of that rays use.
+//! [`Limit`]: the measured peak throughput of a device, and the rays a second that it would allow.
 //!
-//! A ray must at least be tested against the boxes and the spheres that it meets on its way through the tree, or against
-//! every sphere in a world without one, and be read and what it finds be written. The limit is what would be left if the
-//! device did nothing else: no waiting, no sorting, no lane without work, and data that are at hand.
+//! At least, a ray must be tested with the boxes and the spheres that it meets on its way through
+//! the tree, or with every sphere in a world without a tree; it must be read, and its hit written.
+//! The limit is reached if the device does nothing else: no waiting, no sorting, no idle lanes, and
+//! no cache misses.
 //!
-//! Packets and tiles share tests among rays, so that they may come close to it or pass it.
+//! Packets and tiles share tests among rays, so they may come close to the limit or exceed it.
 
 use std::hint::black_box;
 use std::time::{Duration, Instant};
@@ -26,19 +27,19 @@ use crate::lanes::{LANES, Single16};
 
 /// How long a GPU is kept busy before anything is timed.
 pub(super) const WARM_UP: Duration = Duration::from_secs(2);
-/// Operations of a test. A box: six multiply-adds, six comparisons for the largest and the smallest, one of these two. A
-/// sphere, by its discriminant: three differences, three products for each of o·d and o·o, one for c, two for the
-/// discriminant, one comparison.
+/// Operations of a test. Box: six multiply-adds, six comparisons for the largest and the smallest,
+/// one of these two. Sphere, by its discriminant: three differences, three products for each of o·d
+/// and o·o, one for c, two for the discriminant, one comparison.
 const OPERATIONS: f64 = 13.0;
-/// How often each is measured; the fastest counts.
+/// How often each throughput is measured; the fastest counts.
 const ROUNDS: usize = 5;
-/// How long a launch takes at least, for its ends not to count.
+/// The shortest launch whose start and end do not matter.
 const LONG: Duration = Duration::from_millis(5);
 
-/// What a device does at most.
+/// The peak throughput of a device.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Limit {
-    /// Multiplications of 32-bit floats a second; sums, multiply-adds and comparisons take as long.
+    /// Multiplications of 32-bit floats a second. Sums, multiply-adds and comparisons take as long.
     pub operations_per_s: f64,
     /// Bytes read and written a second, in large arrays.
     pub bytes_per_s: f64,
@@ -63,7 +64,7 @@ impl Limit {
         }
     }
 
-    /// The most rays a second of a kind that meet so many nodes and spheres each.
+    /// The most rays a second of a kind, for rays that meet this many nodes and spheres each.
     #[must_use]
     pub fn rays_per_s(&self, kind: Kind, nodes: f64, spheres: f64) -> f64 {
         let tests = nodes * Node::WIDTH as f64 + spheres;
@@ -78,12 +79,12 @@ impl Limit {
     }
 }
 
-/// The largest of what some rounds tell.
+/// The largest result of several rounds.
 fn fastest(mut round: impl FnMut() -> Result<f64>) -> Result<f64> {
     (0..ROUNDS).try_fold(0.0, |fastest: f64, _| Ok(fastest.max(round()?)))
 }
 
-/// Products that do not wait for each other, `rounds` factors each.
+/// Independent products of `rounds` factors each.
 fn products(level: Level, factor: f32, rounds: u32) -> f32 {
     #[inline(always)]
     fn with<S: Simd>(simd: S, factor: f32, rounds: u32) -> f32 {
@@ -105,7 +106,7 @@ fn products(level: Level, factor: f32, rounds: u32) -> f32 {
     dispatch!(level, simd => with(simd, factor, rounds))
 }
 
-/// As many as hide how long a multiplication takes, and fit the registers.
+/// Enough products to hide the latency of a multiplication, but few enough for the registers.
 const PRODUCTS: usize = 10;
 
 fn multiply_on_cpu() -> Result<f64> {
@@ -144,7 +145,7 @@ fn multiply_on_gpu(gpu: &Gpu) -> Result<f64> {
     let threads = if gpu.is_software() { 1 << 12 } else { 1 << 20 };
     let sums = gpu.zeroed::<f32>("sums", threads as usize)?;
     let groups = kernel.workgroups_for([threads, 1, 1]);
-    // As many rounds as take long enough, and no driver's watchdog ends.
+    // Enough rounds to take long enough, but not so many that a driver's watchdog ends the launch.
     let mut rounds = 16;
     loop {
         let parameters = gpu.upload("factor and rounds", &[0.999_999_9, rounds as f32])?;
@@ -154,7 +155,7 @@ fn multiply_on_gpu(gpu: &Gpu) -> Result<f64> {
             rounds *= 2;
             continue;
         }
-        // One that was idle is slow at first.
+        // A GPU that was idle is slow at first.
         let started = Instant::now();
         while !gpu.is_software() && started.elapsed() < WARM_UP {
             gpu.launch(&kernel, &bindings, groups)?;

@@ -1,4 +1,4 @@
-//! The times of rays, and of growing the tree.
+//! Measures the times of rays and of building the tree.
 
 use std::time::{Duration, Instant};
 
@@ -15,73 +15,73 @@ use crate::render::{self, QUIET, Settings, whole_image};
 use crate::scene::Scene;
 use crate::trace::{CpuTracer, GpuTracer};
 
-/// What was measured of one world.
+/// The measurements of one world.
 #[derive(Clone, Debug, Serialize)]
 pub struct Measured {
     /// The world's name.
     pub scene: String,
-    /// How many spheres it has.
+    /// The number of spheres.
     pub spheres: usize,
-    /// Whether they stand in a tree.
+    /// Whether a tree was built.
     pub has_tree: bool,
     /// Width and height of the image.
     pub size: (u32, u32),
     /// The rung.
     pub precision: &'static str,
-    /// Growing the tree.
+    /// Building the tree.
     pub build: Build,
-    /// What tracing takes on the device, spheres, nodes and material ids, in bytes a sphere.
+    /// Device memory for tracing (spheres, nodes and material ids), in bytes a sphere.
     pub bytes_per_sphere: f64,
     /// The rays, kind by kind.
     pub rays: Rays,
 }
 
-/// The kinds of rays.
+/// The speed of each kind of rays.
 #[derive(Clone, Debug, Serialize)]
 pub struct Rays {
-    /// From the eye.
+    /// Rays from the eye.
     pub primary: Speed,
-    /// To a light.
+    /// Rays to a light.
     pub shadow: Speed,
-    /// Within a short reach.
+    /// Rays within a short reach.
     pub ambient: Speed,
-    /// In random order.
+    /// Diffuse rays in random order.
     pub incoherent: Speed,
 }
 
-/// How long the tree takes.
+/// The time that building the tree takes.
 #[derive(Clone, Debug, Serialize)]
 pub struct Build {
     /// The median, in seconds.
     pub seconds: f64,
-    /// Half of the range between the fastest and the slowest.
+    /// Half of the range between the fastest and the slowest, in seconds.
     pub spread: f64,
     /// Spheres over seconds.
     pub spheres_per_s: f64,
-    /// Threads that took part.
+    /// The number of threads.
     pub threads: usize,
 }
 
-/// How fast rays of one kind are.
+/// The speed of rays of one kind.
 #[derive(Clone, Debug, Serialize)]
 pub struct Speed {
-    /// How many there were.
+    /// The number of rays.
     pub rays: usize,
-    /// How many hit something.
+    /// The number of rays that hit something.
     pub hits: usize,
-    /// The median over the rounds.
+    /// The median over the rounds, in seconds.
     pub seconds: f64,
     /// Half of the range between the fastest and the slowest, over the median.
     pub spread: f64,
     /// Millions of rays a second.
     pub mrays_per_s: f64,
-    /// Nodes whose boxes a ray was tested against, on average.
+    /// Nodes whose boxes a ray was tested with, on average.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub nodes_per_ray: Option<f64>,
-    /// Spheres that a ray was tested against, on average.
+    /// Spheres that a ray was tested with, on average.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub spheres_per_ray: Option<f64>,
-    /// What part this is of the rays that [`Limit`] allows, if that was measured.
+    /// The share of the rays a second that [`Limit`] allows, if it was measured.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub share_of_limit: Option<f64>,
 }
@@ -116,13 +116,13 @@ fn median(times: &mut [f64]) -> (f64, f64) {
 pub struct Plan {
     /// The rung.
     pub rung: Rung,
-    /// Whether to grow a tree.
+    /// Whether to build a tree.
     pub acceleration: Acceleration,
-    /// How often each kind is timed; they take turns.
+    /// How often each kind is timed; the kinds take turns.
     pub rounds: usize,
 }
 
-/// Measures `scene` on `device`, which has this limit, if it was measured.
+/// Measures `scene` on `device`. `limit` is the device's, if it was measured.
 ///
 /// # Errors
 ///
@@ -197,7 +197,7 @@ pub fn measure(
     })
 }
 
-/// What primary rays are timed by: an image of one colour.
+/// The settings with which primary rays are timed: an image of one colour.
 fn settings(plan: Plan) -> Settings {
     Settings {
         acceleration: plan.acceleration,
@@ -282,7 +282,7 @@ fn on_gpu(
                 continue;
             }
             tracer.heat(&batches[Kind::Ambient as usize - 1])?;
-            // What was just done is still in the caches, as it is where image follows upon image.
+            // The caches then hold the scene, as they do if one image follows another.
             launch_once(kind)?;
             times[kind as usize].push(launch_once(kind)?.as_secs_f64());
         }

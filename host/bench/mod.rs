@@ -1,12 +1,12 @@
-//! How fast rays of every kind are, by worlds from two spheres to ten million.
+//! Measures the speed of rays of every kind, in worlds from two spheres to ten million.
 //!
 //! | module | holds |
 //! | --- | --- |
 //! | [`scenes`] | the worlds |
 //! | [`rays`] | the rays: primary, shadow, ambient, incoherent |
-//! | [`measure`] | their times |
-//! | [`limit`] | what the device does at most, and how many rays that would be |
-//! | [`verify`] | whether the tree loses a hit |
+//! | [`measure`] | the times of rays and of building the tree |
+//! | [`limit`] | the peak throughput of the device, and the rays that it would allow |
+//! | [`verify`] | checks that the tree loses no hit |
 //! | [`export`] | worlds, rays and hits as files, for other programs |
 
 pub mod export;

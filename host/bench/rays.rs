@@ -1,4 +1,4 @@
-//! The rays of a scene, kind by kind: those that a renderer of it would trace.
+//! The rays of a scene, kind by kind, as a renderer would trace them.
 
 use glam::{UVec2, Vec3};
 use rayon::prelude::*;
@@ -12,17 +12,18 @@ use crate::render::whole_image;
 use crate::scene::Scene;
 use crate::trace::CpuTracer;
 
-/// What rays are for, which decides what is asked of them and how alike neighbours are.
+/// The purpose of rays, which decides whether any hit will do and how similar neighbours are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Kind {
-    /// From the eye through each pixel's middle: the nearest hit.
+    /// From the eye through the middle of each pixel: the nearest hit.
     Primary,
-    /// From each hit to one light: whether there is any.
+    /// From each hit to one light: whether there is any hit.
     Shadow,
-    /// From each hit, four within a short reach, more of them along the normal: whether there is any.
+    /// From each hit, four rays within a short reach, with a cosine distribution: whether there is
+    /// any hit.
     Ambient,
-    /// From each hit on as diffuse light goes, in random order: the nearest.
+    /// From each hit in a direction of diffuse scattering, in random order: the nearest hit.
     Incoherent,
 }
 
@@ -30,7 +31,7 @@ impl Kind {
     /// Every kind.
     pub const ALL: [Self; 4] = [Self::Primary, Self::Shadow, Self::Ambient, Self::Incoherent];
 
-    /// The name, as tables and files have it.
+    /// The kind's name in tables and files.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -48,12 +49,12 @@ impl Kind {
     }
 }
 
-/// Pixels of a side of the squares in which rays stand.
+/// Side, in pixels, of the squares in which rays are ordered.
 const TILE: u32 = 8;
-/// Ambient rays a hit.
+/// Ambient rays for each hit.
 const AMBIENT: usize = 4;
 
-/// What the rays of a pixel that is hit take, and their answers, before and while they are timed.
+/// The most bytes that the rays of a pixel and their hits take, before and during the timing.
 const BYTES_PER_PIXEL: u64 = ((3 + AMBIENT) * size_of::<Ray>()
     + 2 * size_of::<Hit>()
     + size_of::<Surface>()
@@ -65,20 +66,20 @@ const BYTES_PER_PIXEL: u64 = ((3 + AMBIENT) * size_of::<Ray>()
 pub struct RaySets {
     /// Camera rays, row by row.
     pub primary: Vec<Ray>,
-    /// One a hit, square by square of the image.
+    /// One ray for each hit, square by square of the image.
     pub shadow: Vec<Ray>,
-    /// Four a hit, square by square of the image.
+    /// Four rays for each hit, square by square of the image.
     pub ambient: Vec<Ray>,
-    /// One a hit, shuffled.
+    /// One ray for each hit, shuffled.
     pub incoherent: Vec<Ray>,
 }
 
 impl RaySets {
-    /// Refuses an image whose rays would not fit, if each pixel is hit.
+    /// Fails if the rays of an image would not fit into memory, with a hit in each pixel.
     ///
     /// # Errors
     ///
-    /// [`Error::OutOfHostMemory`](crate::Error::OutOfHostMemory).
+    /// [`Error::OutOfHostMemory`](crate::Error::OutOfHostMemory) if they do not fit.
     pub fn check_room(width: u32, height: u32) -> Result<()> {
         let pixels = u64::from(width) * u64::from(height);
         memory::require(
@@ -87,7 +88,8 @@ impl RaySets {
         )
     }
 
-    /// Makes them, by what the camera rays hit; `reach` is the length of ambient rays in scene units.
+    /// Makes the rays from the hits of the camera rays. `reach` is the length of ambient rays in
+    /// scene units.
     ///
     /// # Errors
     ///
@@ -107,7 +109,7 @@ impl RaySets {
             .map(|index| (&primary[index], hits[index]))
             .filter(|(_, hit)| hit.is_some())
             .filter_map(|(ray, hit): (&Ray, Hit)| {
-                // Of another world, if the tracer is.
+                // The tracer may be that of another world.
                 let sphere: Sphere = *scene.world.spheres.get(hit.sphere as usize)?;
                 let mut surface = Surface::at(ray, hit.t, sphere);
                 if surface.normal.dot(ray.direction) > 0.0 {
@@ -116,7 +118,7 @@ impl RaySets {
                 Some(surface)
             })
             .collect();
-        // Above, to the left, and on the eye's side of what is seen.
+        // Above and to the left of what is seen, on the eye's side.
         let view = scene.view_or_framed();
         let light = view.eye + (view.eye.distance(view.target)) * Vec3::new(-0.5, 0.8, 0.0);
         let shadow = surfaces.par_iter().map(|surface| {
@@ -155,7 +157,7 @@ impl RaySets {
         })
     }
 
-    /// Those of one kind.
+    /// The rays of one kind.
     #[must_use]
     pub fn kind(&self, kind: Kind) -> &[Ray] {
         match kind {
@@ -167,7 +169,7 @@ impl RaySets {
     }
 }
 
-/// The indices of pixels, square by square, row by row in each.
+/// The indices of pixels, square by square, row by row in each square.
 fn squares(size: UVec2) -> impl Iterator<Item = usize> {
     let rows = (0..size.y).step_by(TILE as usize);
     rows.flat_map(move |y| {

@@ -1,4 +1,4 @@
-//! The worlds that are timed: each made from a fixed seed, so that anybody times the same.
+//! The worlds that are timed. Each is made from a fixed seed, so that everybody times the same.
 
 use std::path::{Path, PathBuf};
 
@@ -12,7 +12,8 @@ use crate::random::Random;
 use crate::read::{self, toml};
 use crate::scene::{Scene, View, World};
 
-/// What a sphere takes while the tree over it is built, by the largest resident set of `bench --scene R10M`.
+/// The memory for each sphere while the tree is built, by the largest resident set of `bench
+/// --scene R10M`.
 const BYTES_PER_SPHERE: u64 = 300;
 
 /// A world that is timed.
@@ -22,21 +23,21 @@ pub enum BenchScene {
     S2,
     /// 45 balls on a ground.
     S46,
-    /// The last picture of Ray Tracing in One Weekend, about 500 balls.
+    /// The last image of Ray Tracing in One Weekend, about 500 balls.
     S500,
-    /// So many balls, uniform in the cube from −1 to 1, of radius 0.5 N^(−1/3).
+    /// This many balls, uniform in the cube from −1 to 1, of radius 0.5 N^(−1/3).
     Uniform(u32),
     /// A lattice of 100³ balls that do not touch, seen along an axis.
     Lattice,
-    /// The same, seen along no axis.
+    /// The same lattice, not seen along an axis.
     LatticeRotated,
-    /// A million balls of radii over four decades, nine tenths of them in a thousandth of the volume, inside of
-    /// one that encloses all.
+    /// A million balls of radii over four decades, nine tenths of them in a thousandth of the
+    /// volume, inside a ball that encloses all.
     Clustered,
 }
 
 impl BenchScene {
-    /// Every one, the small first.
+    /// Every listed world, the small ones first.
     pub const ALL: [Self; 10] = [
         Self::S2,
         Self::S46,
@@ -50,7 +51,7 @@ impl BenchScene {
         Self::Clustered,
     ];
 
-    /// The name, as the command line takes it.
+    /// The name on the command line.
     #[must_use]
     pub fn name(self) -> String {
         match self {
@@ -66,14 +67,14 @@ impl BenchScene {
         }
     }
 
-    /// The scene with this name.
+    /// The world with this name; `None` if there is none.
     #[must_use]
     pub fn named(name: &str) -> Option<Self> {
         let listed = Self::ALL
             .into_iter()
             .find(|scene| scene.name().eq_ignore_ascii_case(name));
         listed.or_else(|| {
-            // Any other number of balls.
+            // R and any other number of balls.
             let number = name.strip_prefix(['R', 'r'])?;
             let (number, unit) = if let Some(thousands) = number.strip_suffix('k') {
                 (thousands, 1000)
@@ -89,7 +90,7 @@ impl BenchScene {
         })
     }
 
-    /// How far away something must be, in scene units, to be no ambient occluder.
+    /// The length of ambient rays, in scene units: what is farther away does not occlude.
     #[must_use]
     pub fn reach(self) -> f32 {
         match self {
@@ -98,11 +99,11 @@ impl BenchScene {
         }
     }
 
-    /// Refuses more spheres than would fit with their tree.
+    /// Fails if the spheres and their tree would not fit into memory.
     ///
     /// # Errors
     ///
-    /// [`Error::OutOfHostMemory`](crate::Error::OutOfHostMemory).
+    /// [`Error::OutOfHostMemory`](crate::Error::OutOfHostMemory) if they do not fit.
     pub fn check_room(self) -> Result<()> {
         match self {
             Self::Uniform(count) => memory::require(
@@ -161,7 +162,7 @@ impl BenchScene {
     }
 }
 
-/// What a name stands for: one of [`BenchScene::ALL`], another number of spheres, or a file.
+/// A scene to time: one of [`BenchScene::ALL`], another number of spheres, or a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Source {
     /// A world that is made.
@@ -171,11 +172,11 @@ pub enum Source {
 }
 
 impl Source {
-    /// What `name` stands for. A file is looked for, and not read yet.
+    /// The scene with this name. A file must exist, but is not read yet.
     ///
     /// # Errors
     ///
-    /// [`Error::Scene`](crate::Error::Scene) for a name of neither.
+    /// [`Error::Scene`](crate::Error::Scene) for a name that is neither.
     pub fn named(name: &str) -> Result<Self> {
         if let Some(scene) = BenchScene::named(name) {
             return Ok(Self::Made(scene));
@@ -190,7 +191,7 @@ impl Source {
         let (message, likely) = if is_count {
             let most = Node::MAX_SPHERES;
             (
-                format!("`{name}` names no number of spheres from 1 to {most}"),
+                format!("`{name}` is not R and a number of spheres from 1 to {most}"),
                 None,
             )
         } else if path.is_dir() {
@@ -214,11 +215,12 @@ impl Source {
         .into())
     }
 
-    /// The scene for an image of this size, and how far away something must be to be no ambient occluder.
+    /// The scene for an image of this size, and the length of its ambient rays in scene units.
     ///
     /// # Errors
     ///
-    /// [`Error::Scene`](crate::Error::Scene) for a file that is wrong, and as [`BenchScene::make`].
+    /// [`Error::Scene`](crate::Error::Scene) for an invalid file, and the errors of
+    /// [`BenchScene::make`].
     pub fn load(&self, width: u32, height: u32) -> Result<(Scene, f32)> {
         let path = match self {
             Self::Made(scene) => return Ok((scene.make(width, height)?, scene.reach())),
@@ -231,13 +233,13 @@ impl Source {
             low = low.min(sphere.center());
             high = high.max(sphere.center());
         }
-        // As much of it as of the cubes.
+        // The same share of the world's size as for the cubes.
         let reach = 0.15 * (high - low).max_element().max(f32::MIN_POSITIVE);
         Ok((scene, reach))
     }
 }
 
-/// The scene that was [named](Source::named).
+/// Loads the scene of this [name](Source::named).
 ///
 /// # Errors
 ///
@@ -257,7 +259,7 @@ impl View {
         }
     }
 
-    /// As far away, along no axis of the cube.
+    /// From the same distance, but not along an axis of the cube.
     fn from_a_corner() -> Self {
         Self {
             eye: Vec3::new(1.3, 1.9, -2.64),
@@ -343,7 +345,7 @@ mod tests {
             ("scenes", "or a scene (.toml)"),
             ("R0", "R300k"),
             ("R-1", "R300k"),
-            // More than a tree can name, and than 32 bits hold.
+            // More than a tree can index, and more than 32 bits hold.
             ("R2000M", "R300k"),
             ("R5000M", "R300k"),
         ] {

@@ -1,4 +1,4 @@
-//! Whether the tree loses a hit: its answers against those of testing every sphere, ray by ray.
+//! Checks that the tree loses no hit: compares it, ray by ray, with testing every sphere.
 
 use serde::Serialize;
 use spherule_kernel::{Hit, Ray, Rung};
@@ -10,18 +10,19 @@ use crate::error::Result;
 use crate::scene::Scene;
 use crate::trace::{CpuTracer, GpuTracer};
 
-/// What was compared on one rung.
+/// The result of a comparison.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Verified {
     /// Rays that were traced both ways.
     pub rays: usize,
-    /// Those whose t differs, or that hit by one way and miss by the other.
+    /// Rays whose t differs, or that hit one way and miss the other way.
     pub differing: usize,
-    /// Those of equal t and another sphere: two are equally near, and the tree has another order.
+    /// Rays with equal t but different spheres: two spheres are equally near, and the tree has
+    /// another order.
     pub ties: usize,
 }
 
-/// Tests of a ray against a sphere that a comparison of one kind may take.
+/// The most tests of rays with spheres for one kind.
 fn budget(device: &Device) -> usize {
     match device {
         Device::Cpu => 1 << 28,
@@ -30,8 +31,8 @@ fn budget(device: &Device) -> usize {
     }
 }
 
-/// Compares both ways for the rays of each kind; as many of them, evenly spaced, as can be tested against every
-/// sphere in seconds.
+/// Compares both ways for the rays of each kind: for as many of them, evenly spaced, as can be
+/// tested with every sphere within seconds.
 ///
 /// # Errors
 ///
@@ -47,15 +48,15 @@ pub fn verify(device: &Device, scene: &Scene, sets: &RaySets, rung: Rung) -> Res
         if rays.is_empty() {
             continue;
         }
-        let ask = |acceleration| match device {
+        let trace = |acceleration| match device {
             Device::Cpu => {
                 let tracer = CpuTracer::new(spheres, acceleration);
-                Ok(ask_cpu(&tracer, kind, rung, &rays))
+                Ok(trace_cpu(&tracer, kind, rung, &rays))
             }
-            Device::Gpu(gpu) => ask_gpu(gpu, spheres, acceleration, kind, rung, &rays),
+            Device::Gpu(gpu) => trace_gpu(gpu, spheres, acceleration, kind, rung, &rays),
         };
-        let with: Vec<Hit> = ask(Acceleration::Tree)?;
-        let without: Vec<Hit> = ask(Acceleration::BruteForce)?;
+        let with: Vec<Hit> = trace(Acceleration::Tree)?;
+        let without: Vec<Hit> = trace(Acceleration::BruteForce)?;
         verified.rays += rays.len();
         for (with, without) in with.iter().zip(&without) {
             if with.t != without.t || with.is_some() != without.is_some() {
@@ -68,8 +69,8 @@ pub fn verify(device: &Device, scene: &Scene, sets: &RaySets, rung: Rung) -> Res
     Ok(verified)
 }
 
-/// The answers; where any hit will do, one at zero for a hit.
-fn ask_cpu(tracer: &CpuTracer, kind: Kind, rung: Rung, rays: &[Ray]) -> Vec<Hit> {
+/// The hits; if any hit will do, a hit at t = 0.
+fn trace_cpu(tracer: &CpuTracer, kind: Kind, rung: Rung, rays: &[Ray]) -> Vec<Hit> {
     let mut hits = Vec::new();
     if kind.is_any() {
         let mut occluded = Vec::new();
@@ -81,7 +82,7 @@ fn ask_cpu(tracer: &CpuTracer, kind: Kind, rung: Rung, rays: &[Ray]) -> Vec<Hit>
     hits
 }
 
-fn ask_gpu(
+fn trace_gpu(
     gpu: &Gpu,
     spheres: &[spherule_kernel::Sphere],
     acceleration: Acceleration,

@@ -1,4 +1,4 @@
-//! `spherule accuracy`: what each rung gets right on each family of rays, and what it costs.
+//! `spherule accuracy`: measures the errors and the time of each rung on each family of rays.
 
 use std::fmt::Write;
 use std::ops::ControlFlow;
@@ -30,21 +30,21 @@ use crate::ulp;
 use crate::write::Output;
 use crate::write::same::{refuse_clashes, refuse_inputs};
 
-/// Everything that was measured; the JSON output is this.
+/// Everything that was measured, as the JSON output has it.
 #[derive(Debug, Serialize)]
 pub(super) struct Report {
     device: String,
-    /// As asked for; each family says how many it had.
+    /// The requested number; each family has its own count.
     rays_a_family: u32,
     seed: u64,
     refused: Vec<(&'static str, String)>,
     families: Vec<FamilyReport>,
     #[serde(skip_serializing_if = "Option::is_none")]
     frames: Option<FramesReport>,
-    /// Width and height of the image that `samples` are of.
+    /// Width and height of the image that `samples` measure.
     #[serde(skip_serializing_if = "Option::is_none")]
     samples_image: Option<[u32; 2]>,
-    /// Samples a pixel of the image that they are compared with.
+    /// Samples a pixel of the reference image.
     #[serde(skip_serializing_if = "Option::is_none")]
     reference_samples: Option<u32>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -64,7 +64,7 @@ struct FramesReport {
 #[derive(Debug, Serialize)]
 struct FamilyReport {
     family: &'static str,
-    /// Of the certified rung: how many of the rays each stage decided.
+    /// How many tests each stage of the certified rung decides.
     escalation: Escalation,
     rungs: Vec<RungReport>,
 }
@@ -81,18 +81,18 @@ struct RungReport {
 const SEED: u64 = 2026;
 /// The most samples of `--samples`; the reference has more.
 const MOST_SAMPLES: u32 = 256;
-/// What a ray of a family takes, its sphere, its answer, and the ray that leaves it again with them.
+/// The memory for a ray of a family with its sphere, its answer, and the ray that leaves the hit.
 const BYTES_PER_RAY: u64 = 3 * size_of::<(Ray, Sphere)>() as u64;
-/// The part of the time there is that `--samples` is planned to take. The rest is for finding out how large the image
-/// may be, and for what drifts.
+/// The share of the time limit that `--samples` plans for. The rest is for finding the size of the
+/// image, and for drift.
 const SHARE: f64 = 0.8;
 
 pub(super) fn run(arguments: &AccuracyArguments) -> Result<ExitCode> {
     let started = Instant::now();
-    // What is wrong with the input is said before any device is opened.
+    // Errors in the input are reported before any device is opened.
     let html = arguments.output.as_deref().map(Output::new).transpose()?;
     let json = arguments.json.as_deref().map(Output::new).transpose()?;
-    // What a program reads stands alone.
+    // Output for a program must not be mixed with a table.
     let to_stdout = html.iter().chain(&json).any(Output::is_stdout);
     let stdout = (!to_stdout).then(Output::stdout).transpose()?;
     let outputs: Vec<&Output> = html.iter().chain(&json).chain(&stdout).collect();
@@ -115,8 +115,8 @@ pub(super) fn run(arguments: &AccuracyArguments) -> Result<ExitCode> {
     {
         return Err(SceneError::without_place(
             path,
-            "the scene calls for no effect, so that one ray a pixel shows all of it",
-            "give a scene with light or samples, for example scenes/soft-light.toml, or ask for its frames by --scene",
+            "the scene calls for no effect, so one ray a pixel is exact",
+            "give a scene with light or samples, for example scenes/soft-light.toml, or measure its frames with --scene",
         )
         .into());
     }
@@ -148,11 +148,11 @@ pub(super) fn run(arguments: &AccuracyArguments) -> Result<ExitCode> {
     let mut is_cut = false;
     match (scene, &arguments.scene) {
         (Some(mut scene), _) if arguments.samples.is_some() => {
-            // The others are between these two in time and in error.
+            // The other rungs are between these in time and in error.
             let ends = [Rung::Robust, Rung::Double, Rung::Certified];
             let rungs: Vec<Rung> = ends.into_iter().filter(|r| rungs.contains(r)).collect();
             let whole = [scene.width, scene.height];
-            // The limit is for all of the command. A size that was asked for is measured whole.
+            // The limit is for the whole command. A requested size is measured in full.
             let (mut until, mut compiling) = (None, Duration::ZERO);
             if arguments.size.is_none() {
                 let until = *until.insert(started + Duration::from_secs_f64(arguments.time_limit));
@@ -160,7 +160,7 @@ pub(super) fn run(arguments: &AccuracyArguments) -> Result<ExitCode> {
             }
             if whole != [scene.width, scene.height] {
                 note(&format!(
-                    "with {} × {} of {} × {} pixels, to be done in time (--size {2}x{3} measures all)",
+                    "with {} × {} of {} × {} pixels, to be done in time (--size {2}x{3} measures the whole image)",
                     scene.width, scene.height, whole[0], whole[1],
                 ));
             }
@@ -177,8 +177,8 @@ pub(super) fn run(arguments: &AccuracyArguments) -> Result<ExitCode> {
             if measured.steps.is_empty() {
                 drop(bar);
                 note(&format!(
-                    "nothing is measured: the time was up after {} of the reference, and an error is measured against {} \
-                     at least: give a longer --time-limit",
+                    "nothing is measured: time ran out after {} of the reference, which needs at least {} \
+                     for a comparison; give a longer --time-limit",
                     count_of(measured.reference as usize, "sample"),
                     samples::LEAST_REFERENCE,
                 ));
@@ -219,7 +219,7 @@ pub(super) fn run(arguments: &AccuracyArguments) -> Result<ExitCode> {
     }
     drop(bar);
     if is_cut {
-        note("the time was up before all samples were measured: give a longer --time-limit");
+        note("time ran out before all samples were measured; give a longer --time-limit");
     }
     let report = Report {
         device: device.name(),
@@ -245,7 +245,7 @@ pub(super) fn run(arguments: &AccuracyArguments) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Everything about one family of rays.
+/// Measures everything about one family of rays.
 fn measure(
     device: &Device,
     rungs: &[Rung],
@@ -272,15 +272,16 @@ fn measure(
     })
 }
 
-/// Makes the image of `scene` smaller where what `--samples` renders of it would not be done at `until`; says what it took
-/// to compile the pipeline.
+/// Makes the image of `scene` smaller if what `--samples` renders would not be done at `until`.
+/// Returns the time that compiling the pipeline took.
 fn fit_samples(
     scene: &mut Scene,
     device: &Device,
     rungs: &[Rung],
     until: Instant,
 ) -> Result<Duration> {
-    // Of two, so that the pipeline is that of the images to come: one sample alone is no antialiasing.
+    // Two, so that the pipeline is that of the following images: a single sample has no
+    // antialiasing.
     const SAMPLES: u32 = 2;
     let samples = scene.sampling.samples.replace(SAMPLES);
     let in_all = samples::in_all(rungs.len(), MOST_SAMPLES);
@@ -339,8 +340,8 @@ fn steps_table(report: &Report) -> String {
     }
     text.push_str(
         "\nerror: root mean square of the luminance against the image of many samples, over the mean.\n\
-         estimate: what the render itself says, taking its stratified samples for independent ones. error² × ms\n\
-         stays the same where the error falls as 1/√N, and falls where it does better.\n",
+         estimate: the render's own estimate, which assumes that samples are independent, though they are stratified. error² × ms\n\
+         is constant if the error falls as 1/√N, and falls if the error falls faster.\n",
     );
     text
 }
@@ -404,8 +405,8 @@ fn table(report: &Report) -> String {
         text.push_str(&frames_table(frames));
     }
     text.push_str(
-        "ulp: error of t in units in the last place, over the hits, or \"no digit\" where none of its digits is right.\n\
-         false, missed: hits reported that are none, hits not found. margin: the largest |Δ| / (a r²) on the wrong side\n\
+        "ulp: error of t in units in the last place, over the hits, or \"no digit\" if no digit is right.\n\
+         false, missed: reported hits that are misses, hits that were not found. margin: the largest |Δ| / (a r²) on the wrong side\n\
          of a silhouette. self: rays that leave a hit outwards and hit its sphere again. normal°: the largest error of\n\
          the normal.\n",
     );
@@ -450,7 +451,7 @@ fn frames_table(frames: &FramesReport) -> String {
     text
 }
 
-/// Three digits or so, from picoseconds to microseconds.
+/// About three digits, from picoseconds to microseconds.
 fn digits(nanoseconds: f64) -> String {
     match nanoseconds {
         x if x >= 100.0 => format!("{x:.0}"),

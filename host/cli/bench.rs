@@ -1,4 +1,4 @@
-//! `spherule bench`: how fast rays of every kind are here.
+//! `spherule bench`: measures the speed of rays of every kind.
 
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
@@ -24,7 +24,7 @@ use crate::write::Output;
 use crate::write::same::{refuse_clashes, refuse_inputs};
 use spherule_kernel::Rung;
 
-/// What `--json` writes.
+/// The JSON output.
 #[derive(Serialize)]
 struct Report<'a> {
     device: String,
@@ -43,7 +43,7 @@ pub(super) fn run(arguments: &BenchArguments) -> Result<ExitCode> {
     };
     let names = if arguments.scene.is_empty() {
         let all = BenchScene::ALL.map(BenchScene::name);
-        // Its making alone takes longer than all of the others.
+        // Making it takes longer than all the others together.
         all.into_iter()
             .filter(|name| name != "R10M")
             .map(Into::into)
@@ -51,7 +51,7 @@ pub(super) fn run(arguments: &BenchArguments) -> Result<ExitCode> {
     } else {
         arguments.scene.clone()
     };
-    // Every name is looked at, and what it needs, before anything is measured.
+    // Every name, and the memory that it needs, is checked before anything is measured.
     let sources = names
         .iter()
         .map(|name| source(name))
@@ -62,7 +62,7 @@ pub(super) fn run(arguments: &BenchArguments) -> Result<ExitCode> {
         None => Vec::new(),
     };
     let mut outputs: Vec<Output> = json.into_iter().collect();
-    // The tables go there, unless what a program reads does.
+    // Tables go to stdout, unless output for a program does.
     if !outputs.iter().any(Output::is_stdout) && folders.is_empty() {
         outputs.push(Output::stdout()?);
     }
@@ -108,7 +108,7 @@ pub(super) fn run(arguments: &BenchArguments) -> Result<ExitCode> {
     if arguments.verify {
         return compare(arguments, &device, scenes);
     }
-    // Numbers that a program reads stand alone.
+    // Output for a program must not be mixed with tables.
     let to_stdout = json.is_some_and(Output::is_stdout);
     let show = |text: &str| if to_stdout { Ok(()) } else { print(text) };
     let mut limit = None;
@@ -144,7 +144,8 @@ pub(super) fn run(arguments: &BenchArguments) -> Result<ExitCode> {
 struct Named {
     name: String,
     source: Source,
-    /// What a file holds. It is read before anything is written or measured, and once: it may be a pipe.
+    /// The scene of a file. A file may be a pipe, so it is read only once, before anything is
+    /// written or measured.
     read: Option<(Scene, f32)>,
 }
 
@@ -158,7 +159,7 @@ impl Named {
         Ok(Self { name, source, read })
     }
 
-    /// The scene, and how far away something must be to be no ambient occluder.
+    /// The scene, and the length of its ambient rays in scene units.
     fn take(self, arguments: &BenchArguments) -> Result<(Scene, f32)> {
         let size = arguments.size;
         match self.read {
@@ -168,7 +169,7 @@ impl Named {
     }
 }
 
-/// What a name stands for, which need not be Unicode if it is a file's.
+/// The scene with this name, which may not be valid Unicode if it is a file's.
 fn source(name: &OsStr) -> Result<Source> {
     match name.to_str() {
         None if Path::new(name).is_file() => Ok(Source::File(PathBuf::from(name))),
@@ -176,7 +177,7 @@ fn source(name: &OsStr) -> Result<Source> {
     }
 }
 
-/// The tree's answers against those of testing every sphere.
+/// Compares the tree's hits with those of testing every sphere.
 fn compare(arguments: &BenchArguments, device: &Device, scenes: Vec<Named>) -> Result<ExitCode> {
     let mut all = Verified::default();
     print(&format!(
@@ -225,7 +226,7 @@ fn compare(arguments: &BenchArguments, device: &Device, scenes: Vec<Named>) -> R
 
 fn head(width: u32, height: u32, plan: Plan, has_limit: bool) -> String {
     format!(
-        "{width} x {height}, precision {}, medians of {} {}; Mrays/s of each kind, half of the range in per cent{}\n\
+        "{width} x {height}, precision {}, medians of {} {}; Mrays/s of each kind, ± half of the range in per cent{}\n\
          {:<12} {:>9} {:>5}  {:>20} {:>20} {:>20} {:>20}  {:>10} {:>6}\n",
         plan.rung.name(),
         plan.rounds,

@@ -1,4 +1,4 @@
-//! `spherule check`: the canary, then every hard case on every rung.
+//! `spherule check`: runs the canary, then every hard case on every rung.
 
 use std::fmt::Write;
 use std::process::ExitCode;
@@ -97,7 +97,7 @@ fn table(report: &Report) -> String {
     let canary = &report.canary;
     // Writing to a String cannot fail.
     let _ = writeln!(text, "{} ({})\n", report.device, report.why);
-    let _ = writeln!(text, "What its arithmetic does");
+    let _ = writeln!(text, "Its arithmetic");
     let rows = [
         ("sums with an exact error term", share(canary.sums)),
         ("products with an exact error term", share(canary.products)),
@@ -115,10 +115,10 @@ fn table(report: &Report) -> String {
             format!("{}, worst {}", share(canary.roots), ulps(canary.root_ulps)),
         ),
         (
-            "64-bit results right",
-            canary.wide.map_or("there are none".into(), share),
+            "64-bit results correct",
+            canary.wide.map_or("no 64-bit floats".into(), share),
         ),
-        ("finds a NaN by comparing", yes_no(canary.finds_nan).into()),
+        ("NaN differs from itself", yes_no(canary.finds_nan).into()),
         ("keeps subnormals", yes_no(canary.keeps_subnormals).into()),
     ];
     for (what, result) in rows {
@@ -130,7 +130,7 @@ fn table(report: &Report) -> String {
 
     let _ = writeln!(
         text,
-        "\nThe hard cases: ✓ right, · wrong and not promised, ✗ a broken promise\n"
+        "\nThe hard cases: ✓ correct, · wrong but not promised, ✗ broken promise\n"
     );
     let _ = write!(text, "{:>4} {:55}", "", "");
     for rung in Rung::ALL {
@@ -169,7 +169,7 @@ fn table(report: &Report) -> String {
     text
 }
 
-/// An error in units in the last place, or in words where it is no number of them.
+/// An error in units in the last place, or in words if no digit is right.
 fn ulps(distance: u32) -> String {
     let shown = ulp::shown(Some(distance));
     if shown == distance.to_string() {

@@ -1,4 +1,4 @@
-//! `spherule devices`: what can render here.
+//! `spherule devices`: lists the devices that can render.
 
 use std::fmt::Write;
 use std::process::ExitCode;
@@ -38,7 +38,7 @@ fn table(adapters: &[AdapterReport], threads: usize) -> String {
         let yes_no = |yes: bool| if yes { "yes" } else { "no" };
         let _ = writeln!(
             text,
-            "{} {}\n    {} {}, driver {}\n    SPIR-V straight to the driver {}, 64-bit floats {}, timestamps {}\n    \
+            "{} {}\n    {} {}, driver {}\n    SPIR-V directly to the driver {}, 64-bit floats {}, timestamps {}\n    \
              buffers to {} MiB, {} MiB a binding, {} threads a workgroup",
             mark(chosen == Some(index)),
             adapter.name,
@@ -56,6 +56,6 @@ fn table(adapters: &[AdapterReport], threads: usize) -> String {
     if adapters.is_empty() {
         text.push_str("  no GPU adapter: this system has no graphics driver that wgpu can use\n");
     }
-    text.push_str("* --device auto takes this one\n");
+    text.push_str("* chosen by --device auto\n");
     text
 }

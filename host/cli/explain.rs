@@ -1,4 +1,5 @@
-//! `spherule explain`: which effects a scene calls for, by what, and what each costs here.
+//! `spherule explain`: which effects a scene calls for, what calls for them, and what each costs on
+//! this device.
 
 use std::fmt::Write;
 use std::ops::ControlFlow;
@@ -30,29 +31,30 @@ use crate::write::same::refuse_inputs;
 struct Report {
     scene: String,
     spheres: usize,
-    /// Of the image that was measured.
+    /// Size of the image that was measured.
     width: u32,
     height: u32,
     /// Width and height of the scene's image.
     whole_image: [u32; 2],
     /// Samples a pixel of the image that was measured.
     samples: u32,
-    /// Those of the scene's image.
+    /// Samples a pixel of the scene's image.
     whole_samples: u32,
     max_bounces: u32,
     device: String,
     precision: &'static str,
     why_precision: String,
-    /// The kernel's bits of the effects that are called for.
+    /// The kernel's bits of the effects that the scene calls for.
     effect_bits: u32,
-    /// Bytes of the SPIR-V module that the pipeline is made of, before the driver specialises it.
+    /// Bytes of the SPIR-V module of the pipeline, before the driver specialises it.
     module_bytes: usize,
     #[serde(skip_serializing_if = "Option::is_none")]
     frame: Option<Frame>,
     effects: Vec<Effect>,
 }
 
-/// The frame by the scene's own pipeline, and by that of all effects, if there was time for it.
+/// The time of a frame with the scene's own pipeline, and with that of all effects if there was
+/// time for it.
 #[derive(Debug, Serialize)]
 struct Frame {
     own: Cost,
@@ -65,17 +67,18 @@ struct Effect {
     /// What calls for it; absent if nothing does.
     #[serde(skip_serializing_if = "Option::is_none")]
     by: Option<String>,
-    /// The frame without it, by a pipeline that does not hold it; absent if there was no time for it.
+    /// The time of the frame without it, with a pipeline that does not contain it; absent if there
+    /// was no time for it.
     #[serde(skip_serializing_if = "Option::is_none")]
     without: Option<Cost>,
 }
 
-/// The part of the time there is that measuring is planned to take. The rest is for finding out how large the image
-/// may be, and for what drifts.
+/// The share of the time limit that measuring plans for. The rest is for finding the size of the
+/// image, and for drift.
 const SHARE: f64 = 0.6;
 
 pub(super) fn run(arguments: &ExplainArguments) -> Result<ExitCode> {
-    // The limit is for all of the command. A size that was asked for is measured whole.
+    // The limit is for the whole command. A requested size is measured in full.
     let until = match arguments.size {
         None => Some(Instant::now() + Duration::from_secs_f64(arguments.time_limit)),
         Some(_) => None,
@@ -188,7 +191,7 @@ fn report(
     })
 }
 
-/// Said of what was left out.
+/// The text for what was not measured.
 const NOT_MEASURED: &str = "no time left to measure it";
 
 fn table(report: &Report) -> String {
@@ -215,7 +218,7 @@ fn table(report: &Report) -> String {
     {
         let _ = writeln!(
             text,
-            "measured with {} × {} pixels and {}, to be done in time (--size {width}x{height} measures all)",
+            "measured with {} × {} pixels and {}, to be done in time (--size {width}x{height} measures the whole image)",
             report.width,
             report.height,
             count_of(report.samples as usize, "sample"),
@@ -226,11 +229,11 @@ fn table(report: &Report) -> String {
         let _ = match &frame.all_effects {
             Some(all) => writeln!(
                 text,
-                "by the pipeline of all effects {}, {:.2} times as long",
+                "with the pipeline of all effects {}, {:.2} times as long",
                 spread(all),
                 all.milliseconds / frame.own.milliseconds,
             ),
-            None => writeln!(text, "by the pipeline of all effects: {NOT_MEASURED}"),
+            None => writeln!(text, "with the pipeline of all effects: {NOT_MEASURED}"),
         };
         if frame.own.compile_milliseconds > 0.0 {
             let _ = writeln!(
@@ -247,14 +250,14 @@ fn table(report: &Report) -> String {
     }
     let called: Vec<&Effect> = report.effects.iter().filter(|e| e.by.is_some()).collect();
     if called.is_empty() {
-        text.push_str("\nThe scene calls for no effect: one ray a pixel shows it.\n");
+        text.push_str("\nThe scene calls for no effect: one ray a pixel renders it.\n");
     } else {
         let head = if report.frame.is_some() {
             "frame without it"
         } else {
             ""
         };
-        let _ = writeln!(text, "\n{:24} {head:26} by", "Called for");
+        let _ = writeln!(text, "\n{:24} {head:26}  called for by", "Effect");
     }
     for effect in called {
         let cost = match (&effect.without, &report.frame) {

@@ -1,10 +1,11 @@
-//! What happens when somebody wants the command to end: Ctrl-C, `kill`, a terminal that goes away, a limit on its time, a
+//! How the command ends early: by Ctrl-C, `kill`, a closed terminal, a limit on its time, or a
 //! batch system.
 //!
-//! The command removes its temporary files and ends with 128 and the signal's number. While something is
-//! [`Graceful`], the first signal only leaves a note, so that the work can end by itself; the next one ends the
-//! command, and so does the first where nothing goes on because an output has no reader. SIGQUIT removes the temporary
-//! files and has the system end the process, with a core.
+//! The command removes its temporary files and exits with 128 plus the signal's number. While
+//! something is [`Graceful`], the first signal only sets a flag, so that the work can finish early;
+//! the next signal ends the command. The first signal also ends it if an output without a reader
+//! blocks. SIGQUIT removes the temporary files and makes the system end the process with a core
+//! dump.
 
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicI32, AtomicUsize, Ordering};
@@ -12,15 +13,15 @@ use std::time::Duration;
 
 use crate::write::{longest_wait, remove_unfinished};
 
-/// How long an output may take nothing before it holds the end of the command up.
+/// How long an output may be blocked before a signal ends the command.
 const PATIENCE: Duration = Duration::from_secs(1);
 
-/// The first signal's number; 0 before it.
+/// The number of the first signal; 0 before it.
 static REQUESTED: AtomicI32 = AtomicI32::new(0);
-/// How much there is that ends by itself.
+/// How many [`Graceful`] there are.
 static GRACEFUL: AtomicUsize = AtomicUsize::new(0);
 
-/// Work that looks at [`requested`] and ends soon when there is a signal.
+/// Work that polls [`requested`] and finishes soon after a signal.
 #[derive(Debug)]
 pub(crate) struct Graceful(());
 
@@ -38,7 +39,7 @@ impl Drop for Graceful {
     }
 }
 
-/// The number of the signal that asks the command to end, such as SIGINT's 2 or SIGTERM's 15.
+/// The number of the signal that requests the command to end, such as SIGINT's 2 or SIGTERM's 15.
 pub(crate) fn requested() -> Option<i32> {
     match flag().load(Ordering::SeqCst) {
         0 => None,
@@ -46,17 +47,17 @@ pub(crate) fn requested() -> Option<i32> {
     }
 }
 
-/// The exit code of a command that a signal has ended.
+/// The exit code of a command that a signal ended.
 pub(crate) fn exit_code() -> Option<ExitCode> {
     requested().and_then(|signal| Some(ExitCode::from(u8::try_from(128 + signal).ok()?)))
 }
 
-/// Where [`requested`] looks, for what polls it.
+/// The flag behind [`requested`], for code that polls it.
 pub(crate) fn flag() -> &'static AtomicI32 {
     &REQUESTED
 }
 
-/// What each signal does.
+/// Handles a signal.
 fn on_signal(signal: i32) {
     if ends_as_it_is(signal) {
         let _none_is_made_any_more = remove_unfinished();
@@ -65,7 +66,7 @@ fn on_signal(signal: i32) {
     let first = REQUESTED.compare_exchange(0, signal, Ordering::SeqCst, Ordering::SeqCst);
     let is_patient = match first {
         Ok(_) => true,
-        // A timer is nobody's impatience.
+        // The system repeats a timer's signal; that does not mean impatience.
         Err(_) => is_timer(signal),
     };
     if is_patient && GRACEFUL.load(Ordering::SeqCst) > 0 && !waits_in_vain() {
@@ -79,12 +80,12 @@ fn end_with(signal: i32) -> ! {
     end(128 + signal);
 }
 
-/// Whether an output has taken nothing for a while.
+/// Whether an output has been blocked for too long.
 fn waits_in_vain() -> bool {
     longest_wait().is_some_and(|wait| wait >= PATIENCE)
 }
 
-/// Waits for signals from now on. Where that cannot be, they end the process as they do any other.
+/// Handles signals from now on. If that is not possible, they end the process as usual.
 #[cfg(unix)]
 pub(crate) fn install() {
     use signal_hook::consts::{
@@ -94,23 +95,23 @@ pub(crate) fn install() {
     let mut is_first = false;
     ONCE.call_once(|| is_first = true);
     if !is_first {
-        // Two that listen would take one signal for two.
+        // Two listeners would count one signal twice.
         return;
     }
-    // A file beyond `ulimit -f` is an error of its writer, not the end of the process.
+    // Exceeding `ulimit -f` is an error of the writer, not the end of the process.
     // SAFETY: the action does nothing.
     let _ = unsafe { signal_hook::low_level::register(SIGXFSZ, || {}) };
-    // What `nohup` or a shell has set aside stays so.
+    // Signals that `nohup` or a shell ignores stay ignored.
     let asked = [SIGINT, SIGTERM, SIGHUP]
         .into_iter()
         .filter(|signal| action(*signal) != Some(libc::SIG_IGN));
-    // What the calling program does with one of these is its affair.
+    // If the calling program handles one of these, that stays so.
     let others = [SIGQUIT, SIGXCPU, SIGUSR1, SIGUSR2, SIGALRM, SIGVTALRM]
         .into_iter()
         .filter(|signal| action(*signal) == Some(libc::SIG_DFL));
     let signals: Vec<i32> = asked.chain(others).collect();
     let (installed, is_installed) = std::sync::mpsc::channel();
-    // Without a thread that listens, signals would be lost.
+    // Without a listening thread, signals would be lost.
     let listener = std::thread::Builder::new()
         .name("signals".into())
         .spawn(move || {
@@ -134,7 +135,7 @@ fn listen(mut signals: signal_hook::iterator::Signals) {
             break;
         }
     }
-    // What waits for a reader after the first signal is to end by it, too.
+    // Output that is blocked after the first signal must not keep the process alive.
     loop {
         signals.pending().for_each(on_signal);
         if let Some(signal) = requested().filter(|_| waits_in_vain()) {
@@ -144,7 +145,7 @@ fn listen(mut signals: signal_hook::iterator::Signals) {
     }
 }
 
-/// Whether who sends the signal wants no picture, but the process as it is.
+/// Whether the sender wants the process to end as it is, without finishing an image.
 #[cfg(unix)]
 fn ends_as_it_is(signal: i32) -> bool {
     signal == libc::SIGQUIT
@@ -155,7 +156,7 @@ fn ends_as_it_is(_signal: i32) -> bool {
     false
 }
 
-/// Whether the system may send the signal again and again.
+/// Whether the system may send the signal repeatedly.
 #[cfg(unix)]
 fn is_timer(signal: i32) -> bool {
     matches!(signal, libc::SIGXCPU | libc::SIGALRM | libc::SIGVTALRM)
@@ -166,7 +167,7 @@ fn is_timer(_signal: i32) -> bool {
     false
 }
 
-/// Ends the process as the signal does where nobody waits for it.
+/// Ends the process by the signal's default action.
 #[cfg(unix)]
 fn end_by(signal: i32) -> ! {
     let _ = signal_hook::low_level::emulate_default_handler(signal);
@@ -178,23 +179,23 @@ fn end_by(signal: i32) -> ! {
     end(128 + signal)
 }
 
-/// What happens at a signal now.
+/// The current action of a signal; `None` if it is unknown.
 #[cfg(unix)]
 fn action(signal: i32) -> Option<libc::sighandler_t> {
-    // SAFETY: a struct of numbers and pointers, of which zero is a value.
+    // SAFETY: a struct of numbers and pointers, for which zero is valid.
     let mut action: libc::sigaction = unsafe { std::mem::zeroed() };
-    // SAFETY: only the signal's present action is asked for, and there is room for it.
-    let asked = unsafe { libc::sigaction(signal, std::ptr::null(), &raw mut action) };
-    (asked == 0).then_some(action.sa_sigaction)
+    // SAFETY: only reads the signal's current action, into a struct with room for it.
+    let status = unsafe { libc::sigaction(signal, std::ptr::null(), &raw mut action) };
+    (status == 0).then_some(action.sa_sigaction)
 }
 
-/// Ends the process at once: what it would do at its end may wait for threads that have not ended.
+/// Ends the process at once. A normal exit may wait for threads that have not ended.
 #[cfg(unix)]
 fn end(code: i32) -> ! {
     signal_hook::low_level::exit(code)
 }
 
-/// Waits for signals from now on. There, all of them are Ctrl-C's.
+/// Handles Ctrl-C from now on, the only signal on this system.
 #[cfg(windows)]
 pub(crate) fn install() {
     const CTRL_C: i32 = 2;
@@ -206,7 +207,7 @@ fn end(code: i32) -> ! {
     std::process::exit(code)
 }
 
-/// Signals end the process as they do any other.
+/// Signals end the process as usual.
 #[cfg(not(any(unix, windows)))]
 pub(crate) fn install() {}
 

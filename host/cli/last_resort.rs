@@ -1,16 +1,17 @@
-//! The end of the command where memory runs out and nothing is left to be done about it.
+//! Ends the command with a message if memory runs out and nothing can be done about it.
 //!
-//! What grows with a scene or an image is asked for in ways that can fail (`host/memory.rs`). All else is small, and Rust ends the process by
-//! SIGABRT where it cannot be had, and so do graphics drivers. [`Allocator`] notes what was refused, and what catches the signal says
-//! so and ends the command with 1.
+//! Memory that grows with a scene or an image is allocated in ways that can fail
+//! (`host/memory.rs`). All other allocations are small. If one of them fails, Rust ends the process
+//! by SIGABRT, and so do graphics drivers. [`Allocator`] notes the size of a failed allocation; the
+//! handler of the signal prints a message and ends the command with 1.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// The system's allocator, which notes what it was last refused.
+/// The system's allocator, which also notes the size of the last allocation that failed.
 pub struct Allocator;
 
-/// In bytes; 0 for nothing yet.
+/// The size in bytes; 0 if none failed.
 static REFUSED: AtomicUsize = AtomicUsize::new(0);
 
 fn noted(memory: *mut u8, bytes: usize) -> *mut u8 {
@@ -20,11 +21,11 @@ fn noted(memory: *mut u8, bytes: usize) -> *mut u8 {
     memory
 }
 
-// SAFETY: all of it is the system's allocator.
+// SAFETY: every call is passed to the system's allocator.
 unsafe impl GlobalAlloc for Allocator {
     #[inline]
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        // SAFETY: whoever calls this promises what `System` asks for.
+        // SAFETY: the caller meets the requirements of `System`.
         noted(unsafe { System.alloc(layout) }, layout.size())
     }
 
@@ -47,26 +48,27 @@ unsafe impl GlobalAlloc for Allocator {
     }
 }
 
-/// Has the system's allocator be sparing with addresses where they are limited (`ulimit -v`, `ulimit -d`): glibc sets 64 MiB of them aside
-/// for each thread.
+/// Makes the system's allocator use fewer addresses if they are limited (`ulimit -v`, `ulimit -d`):
+/// glibc reserves 64 MiB of them for each thread.
 ///
 /// # Safety
 ///
-/// The process has no other thread yet.
+/// The process must have no other thread yet.
 pub unsafe fn spare_addresses() {
     #[cfg(all(target_os = "linux", target_env = "gnu"))]
     if crate::memory::limit().is_some() {
-        // SAFETY: the caller's.
+        // SAFETY: the caller says that there is no other thread.
         unsafe { libc::mallopt(libc::M_ARENA_MAX, 1) };
     }
 }
 
-/// Catches SIGABRT from now on.
+/// Handles SIGABRT from now on.
 #[cfg(unix)]
 pub(super) fn install() {
-    // Whether a limit is set does not change; a handler may not look.
+    // Whether there is a limit does not change, and a signal handler must not look it up.
     let is_limited = crate::memory::limit().is_some();
-    // SAFETY: the handler reads an atomic, writes to a file descriptor and ends the process; none of these allocates or locks.
+    // SAFETY: the handler reads an atomic, writes to a file descriptor and ends the process; none
+    // of these allocates or locks.
     let _ = unsafe {
         signal_hook::low_level::register(signal_hook::consts::SIGABRT, move || {
             on_abort(is_limited);
@@ -88,14 +90,14 @@ fn on_abort(is_limited: bool) {
         let _ = unsafe { libc::write(libc::STDERR_FILENO, text.as_ptr().cast(), text.len()) };
     };
     if refused > 0 {
-        write(b"  \xc3\x97 out of memory: there were not ");
+        write(b"  \xc3\x97 out of memory: could not allocate ");
         let mut digits = [0; 20];
         write(decimal(refused, &mut digits));
-        write(b" bytes more\n");
+        write(b"  bytes\n");
     } else if is_limited {
-        write(b"  \xc3\x97 out of memory, as it seems: a part of the program gave up, and its memory is limited\n");
+        write(b"  \xc3\x97 probably out of memory: a part of the program aborted, and its memory is limited\n");
     } else {
-        // A mistake of somebody's: the process ends as it would.
+        // A bug rather than a lack of memory: the process aborts as usual.
         return;
     }
     write(HELP);

@@ -1,6 +1,6 @@
-//! The command line: arguments, what is printed, and exit codes. What it does is in the library.
+//! The command line: arguments, messages and exit codes. The work is done by the library.
 //!
-//! Exit codes: 0 done, 1 the machine could not do it (or a check failed), 2 the input is wrong.
+//! Exit codes: 0 success, 1 the machine could not do it (or a check failed), 2 the input is wrong.
 
 mod accuracy;
 mod args;
@@ -38,17 +38,17 @@ use crate::threads::{self, Fewer};
 use crate::write::{Output, Waiting};
 pub use last_resort::{Allocator, spare_addresses};
 
-/// Runs the command line of this process; its exit code is for `main` to return.
+/// Runs the command line of this process. `main` returns the exit code.
 ///
-/// Where a panic would be reported, what signals that end the process do first, where log records
-/// go if they go nowhere yet, and rayon's pool of threads if there is none, is set for the whole process. Nothing else of it is changed, so that
-/// other threads may go on meanwhile.
+/// For the whole process this sets the panic hook, the handlers of signals that end it, the logger
+/// if there is none, and rayon's thread pool if there is none. It changes nothing else, so other
+/// threads may continue.
 #[must_use]
 pub fn main() -> ExitCode {
     run(std::env::args_os())
 }
 
-/// As [`main`], with other arguments; the first is the program's name.
+/// [`main`] with other arguments; the first is the program's name.
 ///
 /// ```
 /// let code = spherule::cli::run(["spherule", "devices", "--json"]);
@@ -84,8 +84,8 @@ pub fn run(arguments: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> 
     }
 }
 
-/// Prints what clap has to say: of arguments that are wrong, or a help that was asked for, which is no error and goes
-/// to stdout.
+/// Prints clap's message: an error in the arguments, or a requested help text, which is not an
+/// error and goes to stdout.
 fn without_arguments(error: &clap::Error, words: &[OsString]) -> ExitCode {
     if error.use_stderr() {
         print_refusal(error, words);
@@ -100,7 +100,7 @@ fn without_arguments(error: &clap::Error, words: &[OsString]) -> ExitCode {
     u8::try_from(error.exit_code()).map_or(ExitCode::FAILURE, ExitCode::from)
 }
 
-/// Prints what is wrong with these words, of which a terminal is to obey none.
+/// Prints what is wrong with these words, escaped so that they cannot control a terminal.
 fn print_refusal(error: &clap::Error, words: &[OsString]) {
     let shown: Vec<OsString> = words
         .iter()
@@ -109,7 +109,7 @@ fn print_refusal(error: &clap::Error, words: &[OsString]) {
     let printed = if shown == words {
         error.print()
     } else {
-        // What is wrong with the words as they are shown is the same, but for the words.
+        // Parsing the escaped words gives the same error, with safe words in it.
         match Arguments::try_parse_from(&shown) {
             Err(again) if again.kind() == error.kind() => again.print(),
             _ => {
@@ -118,7 +118,7 @@ fn print_refusal(error: &clap::Error, words: &[OsString]) {
             }
         }
     };
-    // Nobody may listen.
+    // Nobody may be reading.
     drop(printed);
 }
 
@@ -128,7 +128,10 @@ fn start_threads() -> Result<()> {
     let refused = |text: &str| {
         SceneError::without_place(
             "",
-            format!("{NAME} is `{}`, which is no number of threads", shown(text)),
+            format!(
+                "{NAME} is `{}`, which is not a number of threads",
+                shown(text)
+            ),
             format!(
                 "give a number from 1 to {}, or unset it for one for each processor",
                 threads::most()
@@ -144,7 +147,7 @@ fn start_threads() -> Result<()> {
         _ => None,
     };
     let threads = match threads::start(wanted) {
-        // A program that runs several commands has its pool.
+        // A program that runs several commands already has its pool.
         Err(Error::Threads { .. }) => return Ok(()),
         started => started?,
     };
@@ -169,17 +172,17 @@ fn print(text: &str) -> Result<()> {
     Output::stdout()?.write(text.as_bytes())
 }
 
-/// Writes `value` for programs to read.
+/// Writes `value` as JSON.
 fn write_json(output: &Output, value: &impl Serialize) -> Result<()> {
     let text = serde_json::to_string_pretty(value).map_err(|error| Error::Output {
         path: output.path().into(),
         reason: format!("cannot be written as JSON: {error}"),
-        help: "this is a mistake of spherule's; please report it".into(),
+        help: "this is a bug in spherule; please report it".into(),
     })?;
     output.write(format!("{text}\n").as_bytes())
 }
 
-/// Prints to stderr, if anybody listens.
+/// Prints to stderr; errors are ignored.
 fn note(text: &str) {
     let _waiting = Waiting::begin();
     let _ = writeln!(std::io::stderr(), "{text}");
@@ -209,8 +212,8 @@ fn load(path: &Path) -> Result<Scene> {
     Ok(scene)
 }
 
-/// What the library and wgpu log goes to stderr; `SPHERULE_LOG` sets how much. What it says and is not understood is
-/// ignored, with a word.
+/// Sends the records of the library and of wgpu to stderr. `SPHERULE_LOG` sets how many; a value
+/// that is not understood is ignored with a warning.
 fn start_log() {
     let quiet = Targets::new()
         .with_default(LevelFilter::ERROR)
@@ -233,18 +236,19 @@ fn start_log() {
         .compact();
     tracing_subscriber::registry()
         .with(stderr.with_filter(filter))
-        // A program that calls `main` may have a log of its own.
+        // A program that calls `main` may have a logger of its own.
         .try_init()
         .ok();
 }
 
-/// `quiet`, and what `wish` adds to it: a level is of spherule's own records, `target=level` of others'.
+/// Adds `wish` to `quiet`. A level alone is for spherule's own records, `target=level` for those of
+/// others.
 fn log_filter(wish: &str, quiet: &Targets) -> Result<Targets, String> {
     let mut filter = quiet.clone();
     for part in wish.split(',').map(str::trim).filter(|p| !p.is_empty()) {
         let (target, level) = part.split_once('=').unwrap_or(("spherule", part));
-        let no_level = || format!("`{}` is no level", shown(level.trim()));
-        // What is empty would be taken for "error".
+        let no_level = || format!("`{}` is not a level", shown(level.trim()));
+        // The parser would take an empty level for "error".
         if level.trim().is_empty() {
             return Err(no_level());
         }
@@ -254,8 +258,7 @@ fn log_filter(wish: &str, quiet: &Targets) -> Result<Targets, String> {
     Ok(filter)
 }
 
-/// A panic is a mistake of ours; say so. One that the library catches is reported as an error
-/// instead.
+/// Reports a panic as a bug, unless the library catches it and reports it as an error.
 fn set_panic_hook() {
     std::panic::set_hook(Box::new(|panic| {
         if !crate::device::is_catching() && !crate::read::environment::is_decoding() {

@@ -1,4 +1,4 @@
-//! Which rung is taken, and what is said about it.
+//! Chooses the rung, and says why.
 
 use spherule_kernel::Rung;
 
@@ -7,23 +7,23 @@ use crate::choose::choose;
 use crate::device::Device;
 use crate::scene::Scene;
 
-/// A rung, and what is said about it.
+/// The chosen rung and the messages about it.
 pub(super) struct Chosen {
     pub(super) rung: Rung,
-    /// Why this one, in a few words.
+    /// The reason for the choice, in a few words.
     pub(super) why: String,
-    /// What the user must know of the image, where that is not what was asked for.
+    /// A warning if the image does not meet the tolerance.
     pub(super) warning: Option<String>,
 }
 
-/// The rung that was asked for, or else the one that the scene calls for.
+/// The requested rung, or else the one that the scene calls for.
 pub(super) fn choose_rung(
-    asked_for: Precision,
+    requested: Precision,
     scene: &Scene,
     tolerance: f64,
     device: &Device,
 ) -> Chosen {
-    if let Some(rung) = asked_for.0 {
+    if let Some(rung) = requested.0 {
         return Chosen {
             rung,
             why: "requested".into(),
@@ -43,7 +43,7 @@ pub(super) fn choose_rung(
     let warning = (!choice.is_within).then(|| {
         format!(
             "warning: no precision keeps this image within {} pixels; {}, the most exact one, may be off by {}. \
-             What helps: a larger --tolerance, a smaller image, or a camera with a wider field of view from nearer.",
+             Use a larger --tolerance, a smaller image, or a camera with a wider field of view closer to the scene.",
             pixels(tolerance),
             rung.name(),
             pixels(choice.bound),
@@ -52,7 +52,7 @@ pub(super) fn choose_rung(
     Chosen { rung, why, warning }
 }
 
-/// Two digits of a bound; one that is not finite bounds nothing.
+/// Two digits of a bound; "any number" for infinity and NaN.
 fn pixels(bound: f64) -> String {
     let digits = format!("{bound:.1e}");
     match digits.parse::<f64>() {

@@ -1,4 +1,4 @@
-//! A progress bar on stderr, where it is a terminal and the work takes long enough to wonder.
+//! A progress bar on stderr, if that is a terminal and the work takes long enough.
 
 use std::io::IsTerminal;
 use std::sync::OnceLock;
@@ -6,12 +6,12 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-/// How long the work goes on before the bar appears.
+/// How long the work takes before the bar appears.
 const PATIENCE: Duration = Duration::from_millis(500);
 const STEPS: u64 = 1000;
 
 pub(super) struct Bar {
-    /// What is being done.
+    /// The work's name.
     what: &'static str,
     started: Instant,
     enabled: bool,
@@ -28,7 +28,7 @@ impl Bar {
         }
     }
 
-    /// Shows how far the work is, from 0 to 1.
+    /// Shows how much is done, from 0 to 1.
     pub(super) fn set(&self, done: f64) {
         if !self.enabled || self.started.elapsed() < PATIENCE {
             return;
@@ -39,7 +39,7 @@ impl Bar {
                 .with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
                 .with_message(self.what)
         });
-        // Bands finish in any order; the bar never runs backwards.
+        // Bands finish in any order, but the bar never goes backwards.
         let position = (done * STEPS as f64) as u64;
         bar.set_position(position.max(bar.position()));
     }

@@ -1,4 +1,4 @@
-//! Errors as a person reads them: what, where, and how to mend it.
+//! Prints errors for people: what is wrong, where, and how to fix it.
 
 use std::fmt;
 
@@ -38,7 +38,7 @@ fn supports_color() -> bool {
     std::io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none()
 }
 
-/// An [`Error`] with what miette needs to point at its place.
+/// An [`Error`] with what miette needs to show its place.
 #[derive(Debug)]
 struct Report {
     message: String,
@@ -65,23 +65,23 @@ impl Report {
     }
 }
 
-/// The line with the mistake and its neighbours, as a terminal may show them: escaped, and cut
-/// where they are long.
+/// The line with the error and its neighbours, safe for a terminal: escaped, and cut if they are
+/// long.
 #[derive(Debug)]
 struct Excerpt {
     name: String,
     text: String,
-    /// What is wrong, in bytes of `text`.
+    /// The error's place, in bytes of `text`.
     span: SourceSpan,
-    /// The first line of `text` and the place of the mistake, counted from zero.
+    /// The first line of `text` and the place of the error, counted from zero.
     first_line: usize,
     line_column: (usize, usize),
 }
 
 impl Excerpt {
-    /// The most characters of a neighbouring line, and of the mistake.
+    /// The most characters of a neighbouring line, and of the error itself.
     const LONGEST: usize = 100;
-    /// Characters of its line that are shown before and after the mistake.
+    /// Characters of its line that are shown before and after the error.
     const AROUND: usize = 40;
 
     fn around(place: &Place, name: String) -> Self {
@@ -135,7 +135,7 @@ impl Excerpt {
     }
 }
 
-/// The start of the character that this byte belongs to.
+/// The start of the character that contains this byte.
 fn floor(text: &str, at: usize) -> usize {
     let mut at = at.min(text.len());
     while !text.is_char_boundary(at) {
@@ -151,7 +151,8 @@ impl SourceCode for Excerpt {
         lines_before: usize,
         lines_after: usize,
     ) -> Result<Box<dyn SpanContents<'a> + 'a>, MietteError> {
-        // Without neighbours miette asks where the span is, else for all that is to be shown.
+        // Without neighbours miette asks only for the position of the span, else for the whole
+        // text.
         let (part, (line, column)) = if lines_before + lines_after == 0 {
             (*span, self.line_column)
         } else {
