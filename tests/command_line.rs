@@ -173,7 +173,7 @@ fn devices_are_listed() {
         .arg("devices")
         .assert()
         .success()
-        .stdout(contains("CPU, ").and(contains("* --device auto takes this one")));
+        .stdout(contains("CPU, ").and(contains("* chosen by --device auto")));
     let output = spherule()
         .args(["devices", "--json"])
         .output()

@@ -82,7 +82,7 @@ fn outputs_are_checked_before_the_work() {
         ),
         (&ACCURACY, &["--json", "protected.png"], "is read-only"),
         (&BENCH, &["--json", "no/n.json"], "there is no directory no"),
-        (&BENCH, &["--export", "scene.toml/folder"], "cannot be made"),
+        (&BENCH, &["--export", "scene.toml/folder"], "cannot be created"),
     ];
     for (command, rest, message) in cases {
         spherule(path)
@@ -122,7 +122,7 @@ fn a_folder_that_may_not_be_written_is_refused_before_the_work() {
         .args(["closed/out.png"])
         .assert()
         .code(1)
-        .stderr(contains("no file can be made in closed").and(contains("rendering on").not()));
+        .stderr(contains("no file can be created in closed").and(contains("rendering on").not()));
 }
 
 /// Scene, particles and sky, by their names, another spelling, a symlink and a hard link.
@@ -705,8 +705,8 @@ fn a_file_that_cannot_be_replaced_is_written_in_place() {
          echo \\$?; cp room/spherule-*.exr kept.exr\""
     );
     shell(path, &script).success().stdout("1\n").stderr(
-        contains("overwritten in part")
-            .and(contains("is whole in"))
+        contains("partly overwritten")
+            .and(contains("the complete output is in"))
             .and(contains("No space left on device")),
     );
     image::open(path.join("kept.exr")).expect("an image");

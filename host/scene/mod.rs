@@ -1,13 +1,13 @@
-//! Scenes: what is rendered, and from where.
+//! Scenes: what is rendered, and the view of it.
 //!
 //! | module | holds |
 //! | --- | --- |
-//! | [`world`] | [`World`]: the spheres and their materials, in the device's own types |
-//! | [`view`] | [`View`]: where the camera is, given or framed around the world |
-//! | [`limits`] | what the numbers of a scene may be |
-//! | [`surroundings`] | light, sky, fog, lens: what there is besides spheres |
-//! | [`mod@effects`] | which effects a scene calls for, and by what |
-//! | `validate` | whether a scene can be rendered |
+//! | [`world`] | [`World`]: the spheres and their materials, in the kernel's types |
+//! | [`view`] | [`View`]: the camera's position and direction, given or framed around the world |
+//! | [`limits`] | the ranges of a scene's numbers |
+//! | [`surroundings`] | light, sky, fog, lens: everything besides spheres |
+//! | [`mod@effects`] | which effects a scene calls for, and what calls for them |
+//! | `validate` | checks whether a scene can be rendered |
 
 pub mod effects;
 pub mod limits;
@@ -24,12 +24,12 @@ pub use surroundings::{Develop, FogBall, Lens, PointLight, Sampling, Surrounding
 pub use view::View;
 pub use world::World;
 
-/// A world, a view of it, and the image to make.
+/// A world, a view of it, and the image to render.
 #[derive(Clone, Debug)]
 pub struct Scene {
     /// The spheres and their materials.
     pub world: World,
-    /// Where the camera is; `None` frames the whole world.
+    /// The camera's view; `None` frames the whole world.
     pub view: Option<View>,
     /// Width of the image in pixels.
     pub width: u32,
@@ -37,31 +37,32 @@ pub struct Scene {
     pub height: u32,
     /// The colour of a ray that hits nothing, linear Rec. 709.
     pub background: Vec3,
-    /// Whether the image shows what is behind it where there is no sphere.
+    /// Whether the image is transparent where there is no sphere.
     pub transparent: bool,
     /// The camera's lens and shutter.
     pub lens: Lens,
-    /// The light of the surroundings, instead of the background; `None` for none.
+    /// The light of the surroundings, which replaces the background; `None` for none.
     pub sky: Option<Surroundings>,
-    /// A medium that fills a ball.
+    /// A medium that fills a ball; `None` for none.
     pub fog: Option<FogBall>,
-    /// Points of light.
+    /// The point lights.
     pub lights: Vec<PointLight>,
-    /// How many samples, how many bounces.
+    /// The number of samples and bounces.
     pub sampling: Sampling,
-    /// From light to the colours of an 8-bit image.
+    /// How light becomes the colours of an 8-bit image.
     pub develop: Develop,
-    /// The files that the scene was read from: its own, and what that names. No output may replace them.
+    /// The files that the scene was read from: its own, and those that it names. No output may
+    /// replace them.
     pub sources: Vec<PathBuf>,
 }
 
 impl Scene {
-    /// The width and height of an image when nothing is said.
+    /// The default width and height of an image, in pixels.
     pub const DEFAULT_SIZE: (u32, u32) = (1280, 720);
-    /// The background when nothing is said: a light grey, linear Rec. 709.
+    /// The default background: a light grey, linear Rec. 709.
     pub const DEFAULT_BACKGROUND: Vec3 = Vec3::splat(0.85);
 
-    /// A scene of `world` at the default size, framed as a whole, on the default background.
+    /// A scene of `world` with the default size, view and background.
     #[must_use]
     pub fn new(world: World) -> Self {
         let (width, height) = Self::DEFAULT_SIZE;
@@ -82,7 +83,7 @@ impl Scene {
         }
     }
 
-    /// The view that is rendered: the one given, or else one that frames the world.
+    /// The scene's view, or else one that frames the world.
     #[must_use]
     pub fn view_or_framed(&self) -> View {
         self.view

@@ -1,4 +1,4 @@
-//! What a scene has besides spheres: light, a sky, a medium, a lens, and how it is sampled.
+//! Everything in a scene besides spheres: light, a sky, a medium, a lens, and how it is sampled.
 
 use std::f32::consts::PI;
 use std::f64::consts::FRAC_PI_2;
@@ -6,13 +6,13 @@ use std::f64::consts::FRAC_PI_2;
 use glam::Vec3;
 use spherule_kernel::fog::Fog;
 
-/// A point of light.
+/// A point light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PointLight {
-    /// Where it is, in scene units.
+    /// The light's position, in scene units.
     pub position: Vec3,
-    /// Its radiant intensity, per steradian, linear Rec. 709: at a distance of one scene unit a
-    /// surface that faces it has this irradiance.
+    /// The radiant intensity, per steradian, linear Rec. 709. A surface that faces the light at a
+    /// distance of one scene unit has this irradiance.
     pub intensity: Vec3,
 }
 
@@ -23,36 +23,36 @@ pub struct Surroundings {
     pub horizon: Vec3,
     /// The radiance at the zenith, which is at +y.
     pub zenith: Vec3,
-    /// The sun.
+    /// The sun; `None` for none.
     pub sun: Option<Sun>,
-    /// An image that is seen instead of horizon and zenith.
+    /// An image that replaces horizon and zenith.
     pub image: Option<EnvironmentImage>,
 }
 
 /// The sun.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sun {
-    /// The unit vector towards it.
+    /// The unit vector towards the sun.
     pub direction: Vec3,
-    /// The angle across it, in degrees; zero for shadows without a soft edge.
+    /// The sun's angular diameter, in degrees; zero for shadows with hard edges.
     pub size: f32,
-    /// The irradiance of a surface that faces it.
+    /// The irradiance of a surface that faces the sun.
     pub irradiance: Vec3,
 }
 
 impl Sun {
-    /// The angle between its middle and its edge, in radians.
+    /// The angle between the sun's centre and its edge, in radians.
     fn half_angle(&self) -> f64 {
         0.5 * f64::from(self.size).to_radians()
     }
 
-    /// One minus the cosine of the angle between its middle and its edge.
+    /// One minus the cosine of the angle between the sun's centre and its edge.
     #[must_use]
     pub fn height(&self) -> f32 {
         (2.0 * (0.5 * self.half_angle()).sin().powi(2)) as f32
     }
 
-    /// The radiance of its disc; `None` if it has no extent.
+    /// The radiance of the sun's disc; `None` if its diameter is zero.
     #[must_use]
     pub fn radiance(&self) -> Option<Vec3> {
         // E = L π sin² of the half angle, while the disc is above the horizon.
@@ -68,15 +68,16 @@ pub struct EnvironmentImage {
     pub width: u32,
     /// Height in texels.
     pub height: u32,
-    /// Radiance, row by row from the zenith; −z is in the middle of a row, +x right of it.
+    /// Radiance, row by row from the zenith. −z is in the middle of a row, with +x to the right of
+    /// it.
     pub texels: Vec<Vec3>,
 }
 
 /// A homogeneous medium in a ball.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FogBall {
-    /// The kernel's own words for the medium. With a radius of zero it fills the ball around
-    /// the box of all spheres, where they are at time 0, and of the camera.
+    /// The medium in the kernel's terms. With a radius of zero it fills the ball around the box
+    /// that encloses the camera and all spheres at time 0.
     pub medium: Fog,
 }
 
@@ -85,31 +86,31 @@ pub struct FogBall {
 pub struct Lens {
     /// The diameter of the lens, in scene units; zero for a pinhole.
     pub aperture: f32,
-    /// How far from the eye the plane in focus is, in scene units; `None` for the distance to the
-    /// target.
+    /// The distance of the plane in focus from the eye, in scene units; `None` for the distance of
+    /// the target.
     pub focus_distance: Option<f32>,
-    /// When the shutter opens and closes, in the unit of time of the velocities.
+    /// The times at which the shutter opens and closes, in the unit of time of the velocities.
     pub shutter: (f32, f32),
 }
 
 /// How a scene is sampled.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sampling {
-    /// Samples a pixel; `None` for 1 where nothing is random, else [`Sampling::DEFAULT_SAMPLES`].
+    /// Samples a pixel; `None` for 1 if nothing is random, else [`Sampling::DEFAULT_SAMPLES`].
     pub samples: Option<u32>,
-    /// How often light is reflected or scattered on its way, at most.
+    /// The most bounces of a light path: how often it is reflected or scattered.
     pub max_bounces: u32,
-    /// How near something must be to keep ambient light away, in scene units; `None` for no ambient
-    /// occlusion.
+    /// The distance within which surfaces block ambient light, in scene units; `None` for no
+    /// ambient occlusion.
     pub ambient_occlusion: Option<f32>,
-    /// Another image of the same expectation for each seed.
+    /// The seed of the random numbers. Each seed gives another image with the same expectation.
     pub seed: u32,
 }
 
 impl Sampling {
-    /// Samples a pixel where something is random and nothing is said.
+    /// The default number of samples a pixel, if anything is random.
     pub const DEFAULT_SAMPLES: u32 = 64;
-    /// Bounces where nothing is said.
+    /// The default number of bounces.
     pub const DEFAULT_BOUNCES: u32 = 8;
 }
 
@@ -124,24 +125,24 @@ impl Default for Sampling {
     }
 }
 
-/// From light to the colours of an 8-bit image; linear images are left as they are.
+/// How light becomes the colours of an 8-bit image. Linear images are not changed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Develop {
     /// Stops of exposure: light is multiplied by two to this power.
     pub exposure: f32,
-    /// The curve.
+    /// The curve for bright light.
     pub tonemap: Tonemap,
 }
 
-/// How light beyond the screen's white is shown.
+/// How light brighter than the screen's white is shown.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Tonemap {
-    /// Cut off at white.
+    /// Clamped to white.
     #[default]
     Clamp,
     /// L / (1 + L) of the luminance (E. Reinhard et al., Photographic tone reproduction for digital
     /// images, SIGGRAPH 2002).
     Reinhard,
-    /// A film's curve (K. Narkowicz' fit of the Academy's, 2016).
+    /// A film curve (K. Narkowicz' fit of the Academy's, 2016).
     Aces,
 }

@@ -1,4 +1,4 @@
-//! [`View`]: where the camera stands and where it looks.
+//! [`View`]: the camera's position and direction.
 
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
@@ -6,27 +6,27 @@ use spherule_kernel::{Camera, Sphere};
 
 use super::world::GRAIN;
 
-/// A view, as a person describes one.
+/// A view, as the user describes it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View {
-    /// Where the camera is, in scene units.
+    /// The camera's position, in scene units.
     pub eye: Vec3,
     /// The point in the middle of the image.
     pub target: Vec3,
-    /// The direction that is upwards in the image.
+    /// The direction that points upwards in the image.
     pub up: Vec3,
     /// The angle between the image's lower and upper edge, in degrees.
     pub vertical_fov: f64,
 }
 
 impl View {
-    /// The field of view when nothing is said, in degrees.
+    /// The default vertical field of view, in degrees.
     pub const DEFAULT_FOV: f64 = 40.0;
-    /// How much of the image's width or height a framed world fills.
+    /// The fraction of the image's width or height that a framed world fills.
     const FILL: f64 = 0.94;
 
-    /// The kernel's camera for an image `aspect` times as wide as high; `None` where the view
-    /// is degenerate, as [`Camera::look_at`] says.
+    /// The kernel's camera for an image `aspect` times as wide as high; `None` if
+    /// [`Camera::look_at`] finds the view degenerate.
     #[must_use]
     pub fn camera(&self, aspect: f64) -> Option<Camera> {
         Camera::look_at(
@@ -38,14 +38,14 @@ impl View {
         )
     }
 
-    /// The nearest view along −z, with +y upwards, in which every sphere is whole inside the
-    /// image with a small margin.
+    /// The nearest view along −z, with +y upwards, in which every sphere is entirely inside the
+    /// image, with a small margin.
     ///
-    /// A sphere is inside the view's frustum where its centre is at least a radius inside each
-    /// of the four side planes. Each pair of opposite planes (left and right, lower and upper)
-    /// bounds the eye by two half-planes in the plane that the pair's normals span; the apex of
-    /// their intersection is the nearest eye for that pair, and the farther of the two apexes is
-    /// the answer.
+    /// A sphere is inside the view's frustum if its centre is at least a radius inside each of the
+    /// four side planes. Each pair of opposite planes (left and right, lower and upper) bounds the
+    /// eye by two half-planes in the plane that the pair's normals span. The apex of their
+    /// intersection is the nearest eye for that pair, and the farther of the two apexes is the
+    /// answer.
     #[must_use]
     pub fn framing(spheres: &[Sphere], aspect: f64) -> Self {
         let fov = Self::DEFAULT_FOV;
@@ -73,14 +73,14 @@ impl View {
     }
 }
 
-/// The nearest eye for the two planes through it whose half-opening has the tangent `tangent`
-/// and which open towards −z along `axis` (0 for x, 1 for y): position along the axis, and z.
+/// The nearest eye for the two planes through it whose half-opening has the tangent `tangent` and
+/// which open towards −z along `axis` (0 for x, 1 for y): its position along the axis, and its z.
 fn apex(spheres: &[Sphere], axis: usize, tangent: f64) -> (f64, f64) {
     let cosine = 1.0 / tangent.hypot(1.0);
     let sine = tangent * cosine;
     let (low, high) = least_of_each(spheres, |center, radius| {
-        // Inward normals of the planes on the low and the high side: (±cos, −sin) along
-        // (axis, z). The eye e must satisfy (center − e)·n ≥ radius for both.
+        // Inward normals of the planes on the low and the high side: (±cos, −sin) along (axis, z).
+        // The eye e must satisfy (center − e)·n ≥ radius for both.
         (
             center[axis] * cosine - center.z * sine - radius,
             -center[axis] * cosine - center.z * sine - radius,
@@ -97,7 +97,8 @@ fn middle_z(spheres: &[Sphere]) -> f64 {
     0.5 * (far - behind)
 }
 
-/// The least of the first and of the second of what `of` tells of each sphere's centre and radius; by all threads.
+/// The minima of the two values that `of` returns for each sphere's centre and radius; on all
+/// threads.
 fn least_of_each(spheres: &[Sphere], of: impl Fn(DVec3, f64) -> (f64, f64) + Sync) -> (f64, f64) {
     spheres
         .par_iter()
@@ -144,7 +145,7 @@ mod tests {
                 spheres.iter().all(|s| is_inside(&camera, s, 0.0)),
                 "{view:?}"
             );
-            // A tenth nearer, something sticks out.
+            // From a fifth of the way to the target, some sphere is not entirely inside.
             let nearer = View {
                 eye: view.eye + (view.target - view.eye) * 0.2,
                 ..view

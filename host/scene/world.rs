@@ -1,15 +1,14 @@
-//! [`World`]: spheres and materials as the kernel takes them.
+//! [`World`]: spheres and materials in the kernel's types.
 
 use glam::Vec3;
 use spherule_kernel::{Material, Sphere};
 
+/// With fewer spheres than this, a single thread does the work.
 use crate::error::Result;
 use crate::memory;
-
-/// Below this many spheres a thread goes on alone.
 pub(crate) const GRAIN: usize = 1 << 13;
 
-/// A world of spheres, made on the host out of the device's own types and uploaded as it is.
+/// A world of spheres in the kernel's types, which is uploaded as it is.
 ///
 /// ```
 /// use spherule::scene::World;
@@ -28,9 +27,9 @@ pub struct World {
     pub material_ids: Vec<u32>,
     /// The materials.
     pub materials: Vec<Material>,
-    /// What the materials are called, where they have names; for messages.
+    /// The names of the materials, for messages; empty for those without a name.
     pub material_names: Vec<String>,
-    /// How the spheres move, in scene units per unit of time; empty if none does.
+    /// The velocities of the spheres, in scene units per unit of time; empty if none moves.
     pub velocities: Vec<Vec3>,
 }
 
@@ -40,7 +39,7 @@ impl World {
         self.add_named_material("", material)
     }
 
-    /// Adds a material that messages call by this name, and returns its index.
+    /// Adds a material with a name for messages, and returns its index.
     pub fn add_named_material(&mut self, name: &str, material: Material) -> u32 {
         self.materials.push(material);
         self.material_names
@@ -49,7 +48,7 @@ impl World {
         self.materials.len() as u32 - 1
     }
 
-    /// Adds a sphere of the material with this index.
+    /// Adds a sphere with the material of this index.
     pub fn add(&mut self, sphere: Sphere, material: u32) {
         self.spheres.push(sphere);
         self.material_ids.push(material);
@@ -58,7 +57,8 @@ impl World {
         }
     }
 
-    /// Adds a sphere that moves, in scene units per unit of time; at time 0 it is where it says.
+    /// Adds a moving sphere; `velocity` is in scene units per unit of time. At time 0 it is at its
+    /// given centre.
     pub fn add_moving(&mut self, sphere: Sphere, material: u32, velocity: Vec3) {
         self.velocities.resize(self.spheres.len(), Vec3::ZERO);
         self.spheres.push(sphere);

@@ -1,4 +1,4 @@
-//! What can go wrong while an output is written, and how to mend it.
+//! Failures of writing an output, and how to fix them.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -6,20 +6,20 @@ use std::path::{Path, PathBuf};
 use super::temporary::Unnamed;
 use crate::error::Error;
 
-/// Why something was not written.
+/// Why an output was not written.
 pub(super) enum Failure {
     Io(io::Error),
-    /// It cannot be put into a file of its kind.
+    /// It cannot be encoded in its format.
     Encoding(String),
-    /// So many bytes of memory were needed.
+    /// This many bytes of memory were not available.
     Memory(u64),
-    /// The temporary file that it was to go through cannot be written or read.
+    /// The temporary file for a stream cannot be written or read.
     Spool(io::Error),
-    /// It is whole, and where it is, because it did not get its name.
+    /// The output is complete, but under the name `kept`, because it could not be given its own.
     Kept {
         error: io::Error,
         kept: PathBuf,
-        /// Whether what has the name was overwritten in part.
+        /// Whether the file with the output's name was partly overwritten.
         is_cut: bool,
     },
 }
@@ -51,20 +51,20 @@ pub(super) fn failed(path: &Path, reason: impl Into<String>, help: &str) -> Erro
     }
 }
 
-/// What the system said, without the name of a temporary file.
+/// The system's message, without the name of a temporary file.
 pub(super) fn said(error: &io::Error) -> String {
     let text = error.to_string();
     if error.raw_os_error().is_some() {
         return text;
     }
-    // So `tempfile` puts it.
+    // The form of `tempfile`'s messages.
     match text.split_once(" at path \"") {
         Some((said, _)) => said.into(),
         None => error.kind().to_string(),
     }
 }
 
-/// Whether there is no room on the disk, or none for this user or this process.
+/// Whether the disk is full, or a quota or limit of this user or process is reached.
 pub(super) fn is_full(error: &io::Error) -> bool {
     matches!(
         error.kind(),
@@ -72,14 +72,14 @@ pub(super) fn is_full(error: &io::Error) -> bool {
     )
 }
 
-/// How to mend what the system said.
+/// How to fix a system error.
 pub(super) fn help_for(error: &io::Error) -> &'static str {
     match error.kind() {
         io::ErrorKind::StorageFull => {
             "make room (`df` and `df -i` show what is used up), or name a file on another disk"
         }
         io::ErrorKind::QuotaExceeded => {
-            "make room (`quota` shows how much you may use), or name a file on another disk"
+            "make room (`quota` shows your limit), or name a file on another disk"
         }
         io::ErrorKind::FileTooLarge => {
             "allow larger files (`ulimit -f` shows the limit), or name a file on another disk"
@@ -92,13 +92,13 @@ pub(super) fn help_for(error: &io::Error) -> &'static str {
             "name a file that you may write, in a directory that you may write"
         }
         io::ErrorKind::NotFound | io::ErrorKind::NotADirectory => {
-            "make the directory, or name another"
+            "create the directory, or name another"
         }
-        io::ErrorKind::ConnectionRefused => "start what is to read it before",
+        io::ErrorKind::ConnectionRefused => "start its reader first",
         io::ErrorKind::BrokenPipe | io::ErrorKind::ConnectionReset => {
-            "let what reads it read to the end"
+            "the reader must read to the end"
         }
-        _ => "name another file, or mend what the system says of this one",
+        _ => "name another file, or fix the reported problem",
     }
 }
 

@@ -1,24 +1,24 @@
-//! [`Format`]: the kinds of image files that are written.
+//! [`Format`]: the image formats that can be written.
 
 use std::path::Path;
 
 use crate::error::{Error, Result};
 
-/// A kind of image file.
+/// An image format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
-    /// 8 bits a channel; light in sRGB, measurements as they are.
+    /// 8 bits a channel; light in sRGB, measurements unchanged.
     Png,
     /// 32-bit floats, linear.
     Exr,
 }
 
 impl Format {
-    /// The format that the file's extension names.
+    /// The format for the file's extension.
     ///
     /// # Errors
     ///
-    /// [`Error::OutputRefused`] if it names none that can be written.
+    /// [`Error::OutputRefused`] if it is not the extension of a format that can be written.
     pub fn of(path: &Path) -> Result<Self> {
         let extension = path
             .extension()
@@ -28,12 +28,12 @@ impl Format {
             Some("exr") => Ok(Self::Exr),
             _ => Err(Error::OutputRefused {
                 path: path.into(),
-                reason: "not a kind of image that spherule writes".into(),
+                reason: "not an image format that spherule writes".into(),
                 help: "give a name that ends in .png or .exr".into(),
             }),
         }
     }
 }
 
-/// What memory is for here.
+/// The purpose that memory errors name.
 pub(super) const PURPOSE: &str = "writing the image";

@@ -1,4 +1,4 @@
-//! [`Identity`]: which file a path leads to.
+//! [`Identity`]: which file a path refers to.
 
 use std::ffi::OsString;
 use std::fs::{self, Metadata};
@@ -6,12 +6,12 @@ use std::path::Path;
 
 use super::directory_of;
 
-/// What a name stands for.
+/// The file that a path refers to.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) enum Identity {
-    /// Something that exists.
+    /// A file that exists.
     There(Id),
-    /// A file that does not: its directory, and its name there.
+    /// A file that does not exist: its directory, and its name there.
     Missing(Id, OsString),
 }
 
@@ -21,7 +21,8 @@ type Id = (u64, u64);
 type Id = PathBuf;
 
 impl Identity {
-    /// `None` for what any number of outputs and inputs may share, as `/dev/null`, and where nothing can be told.
+    /// The identity of a path; `None` for what any number of outputs and inputs may share, such as
+    /// `/dev/null`, and if it cannot be determined.
     pub(super) fn of(path: &Path) -> Option<Self> {
         match fs::metadata(path) {
             Ok(about) if is_shared(&about) => None,
@@ -30,7 +31,7 @@ impl Identity {
                 let directory = directory_of(path);
                 let about = fs::metadata(directory).ok()?;
                 let name = path.file_name()?;
-                // Where case makes no other file.
+                // On systems that ignore case.
                 let name = if cfg!(any(windows, target_vendor = "apple")) {
                     name.to_string_lossy().to_lowercase().into()
                 } else {
@@ -43,7 +44,7 @@ impl Identity {
 }
 
 impl Identity {
-    /// That of standard output, wherever it leads.
+    /// The identity of standard output, wherever it goes.
     #[cfg(unix)]
     pub(super) fn of_stdout() -> Option<Self> {
         use std::os::unix::fs::MetadataExt;

@@ -1,4 +1,4 @@
-//! Images as files: their kinds, and the memory that writing one takes.
+//! Writes images to files, with memory reserved in advance.
 
 use std::path::Path;
 
@@ -11,19 +11,20 @@ use crate::error::Result;
 use crate::film::Image;
 use crate::memory;
 
-/// Memory that is kept until an image is written, so that one which took long is not lost for want of it.
+/// Memory that is reserved until an image is written, so that an image that took long is not lost
+/// if there is none.
 #[derive(Debug)]
 pub struct Room {
-    /// Asked for and never touched; freed when the image is written.
+    /// Allocated but never touched; freed when the image is written.
     _bytes: Vec<u8>,
 }
 
 impl Room {
-    /// Room to write an image of `width` × `height` pixels, with opacities or without.
+    /// Reserves memory to write an image of `width` × `height` pixels, with or without opacities.
     ///
     /// # Errors
     ///
-    /// [`Error::OutOfHostMemory`] if the host has not that much.
+    /// [`Error::OutOfHostMemory`] if the host does not have that much.
     pub fn reserve(format: Format, width: u32, height: u32, has_alpha: bool) -> Result<Self> {
         let encoder = match format {
             Format::Png => png::room(width, has_alpha),
@@ -36,12 +37,13 @@ impl Room {
 }
 
 impl Image {
-    /// Writes the image to `path`, as its extension says: the file appears whole or not at all.
+    /// Writes the image to `path`, in the format of its extension. The file appears whole or not at
+    /// all.
     ///
     /// # Errors
     ///
-    /// [`Error::OutputRefused`] if the extension is unknown, [`Error::Output`] if the file cannot be written,
-    /// [`Error::OutOfHostMemory`] if there is no memory for its rows.
+    /// [`Error::OutputRefused`] if the extension is unknown, [`Error::Output`] if the file cannot
+    /// be written, [`Error::OutOfHostMemory`] if there is no memory for its rows.
     pub fn save(&self, path: impl AsRef<Path>) -> Result<()> {
         let output = Output::image(path.as_ref())?;
         let has_alpha = self.has_alpha();
@@ -50,14 +52,15 @@ impl Image {
         self.save_to(&output, room)
     }
 
-    /// Writes the image to `output`, as its extension says, with memory that was kept for it.
+    /// Writes the image to `output`, in the format of its extension, with memory that was reserved
+    /// for it.
     ///
     /// # Errors
     ///
     /// As [`Image::save`].
     pub(crate) fn save_to(&self, output: &Output, room: Room) -> Result<()> {
         let format = Format::of(output.path())?;
-        // From here on it is for the encoder.
+        // From here on the memory is for the encoder.
         drop(room);
         output.fill(most(format, self), |sink, trouble| {
             if self.pixels().is_empty() {
@@ -71,7 +74,7 @@ impl Image {
     }
 }
 
-/// The bytes of a file of this kind that could not be compressed at all.
+/// The bytes of a file in this format that could not be compressed at all.
 fn most(format: Format, image: &Image) -> u64 {
     let has_alpha = image.has_alpha();
     match format {

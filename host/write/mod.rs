@@ -2,16 +2,16 @@
 //!
 //! | module | holds |
 //! | --- | --- |
-//! | [`output`] | [`Output`]: where something goes, what is checked about it, and how it gets there |
-//! | [`same`] | which names are one file: outputs that clash, and outputs that are inputs |
-//! | `format`, [`image`] | the kinds of image files; [`Image::save`](crate::Image::save), and the memory that writing one takes |
-//! | `identity` | which file a path leads to |
-//! | `failure` | what can go wrong while an output is written |
-//! | `png`, `exr` | their encoders, which hold a few rows at once |
-//! | `sink` | what encoders write into |
-//! | `stream` | what is written into as it is |
+//! | [`output`] | [`Output`]: one output: its destination, the checks in advance, and the writing |
+//! | [`same`] | which names are the same file: outputs that clash, and outputs that are inputs |
+//! | `format`, [`image`] | the image formats; [`Image::save`](crate::Image::save), and the memory for it |
+//! | `identity` | which file a path refers to |
+//! | `failure` | failures of writing an output |
+//! | `png`, `exr` | the encoders, which hold a few rows at a time |
+//! | `sink` | the file that encoders write to |
+//! | `stream` | pipes, devices and sockets, which cannot be replaced |
 //! | `temporary` | files under a temporary name |
-//! | `waiting` | what waits for somebody else |
+//! | `waiting` | calls that may block because of another process |
 
 mod exr;
 mod failure;
@@ -41,7 +41,7 @@ pub(crate) use temporary::remove_all as remove_unfinished;
 #[cfg(feature = "cli")]
 pub(crate) use waiting::{Waiting, longest as longest_wait};
 
-/// The directory that a file of this name is in.
+/// The directory of a file with this name.
 fn directory_of(path: &Path) -> &Path {
     match path.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent,

@@ -1,4 +1,4 @@
-//! [`Output`]: where something goes, what is checked about it, and how it gets there.
+//! [`Output`]: the destination of an output, the checks in advance, and the writing.
 
 use std::cell::OnceCell;
 use std::fs::{self, File, Metadata, OpenOptions};
@@ -21,45 +21,46 @@ use crate::error::{Error, Result, bytes};
 use crate::memory;
 use crate::shown::shown_path;
 
-/// Where one output goes. What can be known before the work is checked when it is made.
+/// The destination of an output. Making one checks everything that can be checked before the work.
 ///
-/// | what has the name | what becomes of it |
+/// | what exists at the path | what happens |
 /// | --- | --- |
-/// | nothing, or a file | The file appears whole or not at all: it is written beside its place under a temporary name, and renamed when it is on the disk. |
-/// | a file | What replaces it has its permissions, and its owner and group where this process may give them. Another hard link of it keeps the old content. |
-/// | a file that may not be written | It is refused, though a rename would replace it: somebody protected it. |
-/// | a file that cannot be replaced | It is written in place, once all is there: it is mounted by itself (`mount --bind`, a container's volume), or it is another user's in a sticky directory. |
-/// | a symlink | It stays; the file that it leads to is made or replaced. |
-/// | a pipe, a device, a socket | It is opened before the work, and written into as it is, once all is there. A pipe that nobody reads by then is opened when it is written. |
-/// | `-` | Standard output, except for images. |
+/// | nothing, or a file | The file appears whole or not at all: it is written to a temporary file in the same directory, which is renamed when it is on the disk. |
+/// | a file | The new file gets its permissions, and its owner and group if this process may set them. Other hard links keep the old content. |
+/// | a file that may not be written | It is an error, though a rename could replace it: somebody protected the file. |
+/// | a file that cannot be replaced | It is overwritten in place, once the output is complete. Such a file is a mount point (`mount --bind`, a container's volume), or belongs to another user in a sticky directory. |
+/// | a symlink | It stays; the file that it points to is created or replaced. |
+/// | a pipe, a device, a socket | It is opened before the work, and written to once the output is complete. A pipe without a reader is opened when the output is written. |
+/// | `-` | Standard output; not for images. |
 ///
-/// Where all is there and does not get its name after all, it is kept beside its place, and the error says under which
-/// name.
+/// If the output is complete but cannot be given its name, it is kept in the same directory, and
+/// the error names the file.
 #[derive(Debug)]
 pub struct Output {
-    /// As the user called it.
+    /// The path as the user gave it.
     path: PathBuf,
     place: Place,
-    /// Where an image waits until it can go into a stream, which is written from its start to its end.
+    /// A temporary file for an image whose destination is a stream, which can only be written from
+    /// start to end.
     spool: Option<File>,
 }
 
 #[derive(Debug)]
 enum Place {
     Stdout,
-    /// What is written into as it is.
+    /// Something that is written to and never replaced.
     Stream(Stream),
-    /// A file with this name, which is not a symlink's.
+    /// A file with this path, which is not a symlink.
     File(PathBuf),
 }
 
 impl Output {
-    /// An output of text or of numbers; `-` is standard output.
+    /// An output of text or numbers; `-` is standard output.
     ///
     /// # Errors
     ///
-    /// [`Error::Output`] if the path is a directory or a file that may not be written, if no file can be made in its
-    /// directory, or if it is something else that cannot be opened.
+    /// [`Error::Output`] if the path is a directory or a file that may not be written, if no file
+    /// can be created in its directory, or if it is something else that cannot be opened.
     pub fn new(path: &Path) -> Result<Self> {
         if path == Path::new("-") {
             return Self::stdout();
@@ -79,7 +80,7 @@ impl Output {
     ///
     /// # Errors
     ///
-    /// [`Error::Output`] if it takes nothing.
+    /// [`Error::Output`] if it cannot be written to.
     pub fn stdout() -> Result<Self> {
         #[cfg(unix)]
         super::stream::stdout().map_err(|error| stdout_failed(&error))?;
@@ -90,11 +91,12 @@ impl Output {
         })
     }
 
-    /// An image.
+    /// An output for an image.
     ///
     /// # Errors
     ///
-    /// As [`Output::new`], and [`Error::OutputRefused`] if the extension names no kind of image.
+    /// As [`Output::new`], and [`Error::OutputRefused`] if the extension is not that of an image
+    /// format.
     pub fn image(path: &Path) -> Result<Self> {
         Format::of(path)?;
         let mut output = Self::new(path)?;
@@ -105,13 +107,13 @@ impl Output {
         Ok(output)
     }
 
-    /// As the user called it.
+    /// The path as the user gave it.
     #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Whether it is standard output, as `-` or by another name.
+    /// Whether this is standard output, as `-` or under another name.
     #[cfg(feature = "lab")]
     #[must_use]
     pub fn is_stdout(&self) -> bool {
@@ -131,7 +133,7 @@ impl Output {
         }
     }
 
-    /// Writes `bytes`. A reader of standard output that has gone away is no error.
+    /// Writes `bytes`. It is not an error if the reader of standard output has closed it.
     ///
     /// # Errors
     ///
@@ -155,8 +157,8 @@ impl Output {
         }
     }
 
-    /// Writes what `write` does, which is `most` bytes or less. An error that the sink remembers goes before what
-    /// `write` says.
+    /// Writes what `write` produces, which is at most `most` bytes. An error that the sink recorded
+    /// takes precedence over the one that `write` returns.
     pub(super) fn fill(
         &self,
         most: u64,
@@ -170,7 +172,7 @@ impl Output {
         filled.map_err(|failure| self.explained(failure, most))
     }
 
-    /// The error for a failure to write `most` bytes or less.
+    /// The error for a failure to write at most `most` bytes.
     fn explained(&self, failure: Failure, most: u64) -> Error {
         match failure {
             Failure::Memory(needed) => memory::failed(needed, PURPOSE),
@@ -181,20 +183,20 @@ impl Output {
             Failure::Spool(error) => self.spool_failed(&error, Some(most)),
             Failure::Kept { error, kept, is_cut } => self.failed(
                 format!(
-                    "{}: {}; what was to be written is whole in {}",
+                    "{}: {}; the complete output is in {}",
                     if is_cut {
-                        "was overwritten in part, because it cannot be replaced, and the rest cannot be written"
+                        "was partly overwritten, because it cannot be replaced, and the rest cannot be written"
                     } else {
                         "cannot be written"
                     },
                     said(&error),
                     shown_path(&kept)
                 ),
-                "give that file a name of your own, before its directory is tidied up",
+                "rename that file before its directory is cleaned up",
             ),
             Failure::Io(error) if is_full(&error) => self.failed(
                 format!(
-                    "cannot be written: {}; it takes {} or less",
+                    "cannot be written: {}; it needs {} or less",
                     said(&error),
                     bytes(most)
                 ),
@@ -212,7 +214,7 @@ impl Output {
         stream: &Stream,
         write: impl FnOnce(Sink<'_>, &Trouble) -> Result<(), Failure>,
     ) -> Result<(), Failure> {
-        // A stream cannot be written in an order of its own, as some kinds of files are.
+        // A stream is written from start to end, but some formats are not.
         let spool = match &self.spool {
             Some(spool) => spool.try_clone(),
             None => tempfile::tempfile(),
@@ -248,24 +250,24 @@ impl Output {
         }
     }
 
-    /// The error for a temporary file that could not hold what is for a stream.
+    /// The error for a temporary file that could not hold the output of a stream.
     fn spool_failed(&self, error: &io::Error, most: Option<u64>) -> Error {
         let size = match most {
-            Some(most) if is_full(error) => format!("; it takes {} or less", bytes(most)),
+            Some(most) if is_full(error) => format!("; it needs {} or less", bytes(most)),
             _ => String::new(),
         };
         failed(
             &std::env::temp_dir(),
             format!(
-                "no temporary file can be written there: {}{size}. An image for {} is made in one first",
+                "no temporary file can be written there: {}{size}. An image for {} is first written to one",
                 said(error),
                 shown_path(&self.path)
             ),
-            "set TMPDIR to a directory that may be written and has room, or name a file instead of a stream",
+            "set TMPDIR to a directory that is writable and has room, or name a file instead of a stream",
         )
     }
 
-    /// Whether `target` may be made or replaced.
+    /// Checks whether `target` may be created or replaced.
     fn check(&self, target: &Path) -> Result<()> {
         let directory = directory_of(target);
         let about = fs::metadata(directory);
@@ -288,10 +290,10 @@ impl Output {
                     "cannot be written: there is no directory {}",
                     shown_path(directory)
                 ),
-                "make the directory, or name another",
+                "create the directory, or name another",
             ));
         }
-        // A name that cannot be looked up cannot be given either.
+        // A name that cannot be looked up cannot be given to a file either.
         let old = match fs::symlink_metadata(target) {
             Ok(about) => Some(about),
             Err(error) if error.kind() == io::ErrorKind::NotFound => None,
@@ -304,7 +306,7 @@ impl Output {
         };
         if let Some(about) = &old {
             let opened = OpenOptions::new().write(true).open(target);
-            // Who may write everything is protected from mistakes all the same.
+            // A read-only file is protected even from users who may write everything.
             if about.permissions().readonly() || opened.is_err() {
                 let reason = match opened {
                     Err(error) => format!("cannot be written: {}", said(&error)),
@@ -319,7 +321,7 @@ impl Output {
         if is_append_only(directory) {
             return Err(self.failed(
                 format!(
-                    "cannot be written: {} is append-only: what is made there can be given no other name",
+                    "cannot be written: {} is append-only: files in it cannot be renamed",
                     shown_path(directory)
                 ),
                 "name a file in another directory (`lsattr -d` shows its attributes, `chattr -a` removes this one)",
@@ -328,13 +330,13 @@ impl Output {
         let unmade = |error: io::Error| {
             let help = match error.kind() {
                 io::ErrorKind::PermissionDenied => {
-                    "name a file in a directory that may be written: files are made beside their place, and appear whole"
+                    "name a file in a directory that may be written: new files are created there first, so that they appear whole"
                 }
                 _ => help_for(&error),
             };
             self.failed(
                 format!(
-                    "cannot be written: no file can be made in {}: {}",
+                    "cannot be written: no file can be created in {}: {}",
                     shown_path(directory),
                     said(&error)
                 ),
@@ -347,7 +349,7 @@ impl Output {
             take_after(file, old).map_err(|error| {
                 self.failed(
                     format!(
-                        "cannot be replaced: no other file gets its permissions: {}",
+                        "cannot be replaced: its permissions cannot be given to a new file: {}",
                         said(&error)
                     ),
                     "remove the file, or name another",
@@ -358,7 +360,7 @@ impl Output {
         probe.remove().map_err(|(error, path)| {
             self.failed(
                 format!(
-                    "cannot be written: what is made in {} cannot be renamed or removed: {}; {} stays there",
+                    "cannot be written: new files in {} cannot be renamed or removed: {}; {} is left there",
                     shown_path(directory),
                     said(&error),
                     shown_path(&path)
@@ -378,11 +380,11 @@ fn to_stdout(bytes: &[u8]) -> Result<()> {
     printed(waiting::put(io::stdout().lock(), bytes))
 }
 
-/// What became of printing to standard output. A reader that has gone away is no error.
+/// The result of printing to standard output. It is not an error if the reader has closed it.
 ///
 /// # Errors
 ///
-/// [`Error::Output`] for any other reason.
+/// [`Error::Output`] for any other error.
 #[cfg(feature = "lab")]
 pub(crate) fn printed(printed: io::Result<()>) -> Result<()> {
     match printed {
@@ -409,7 +411,7 @@ fn fill_file(
 ) -> Result<(), Failure> {
     let mut temporary = Temporary::in_directory(directory_of(target))?;
     if let Ok(old) = fs::metadata(target) {
-        // It was tried before the work; now the picture is worth more.
+        // It worked before the work; now the image matters more.
         let _ = take_after(temporary.file()?, &old);
     }
     into_sink(temporary.file()?, write)?;
@@ -417,42 +419,42 @@ fn fill_file(
     Ok(())
 }
 
-/// Gives a new file the rights of the old one.
+/// Gives a new file the permissions, owner and group of the old one.
 #[cfg(unix)]
 fn take_after(file: &File, old: &Metadata) -> io::Result<()> {
     use std::os::unix::fs::{MetadataExt, PermissionsExt, fchown};
     let new = file.metadata()?;
     let mut mode = old.mode() & 0o777;
     if new.uid() != old.uid() {
-        // Only who may do anything can give a file away.
+        // Only privileged users can give a file away.
         let _ = fchown(file, Some(old.uid()), None);
     }
     if new.gid() != old.gid() && fchown(file, None, Some(old.gid())).is_err() {
-        // What the old group could do is not for this one, unless it is for everybody.
+        // The new group does not get the old group's permissions, unless everybody has them.
         mode &= 0o707 | (mode & 0o7) << 3;
     }
     match file.set_permissions(PermissionsExt::from_mode(mode)) {
-        // Some file systems have one mode for all.
+        // Some file systems have one mode for all files.
         Err(_) if file.metadata()?.mode() & 0o777 & !mode == 0 => Ok(()),
         set => set,
     }
 }
 
-/// Whether files can be made in the directory, and not renamed (`chattr +a`).
+/// Whether files in the directory can be created but not renamed (`chattr +a`).
 #[cfg(all(target_os = "linux", target_env = "gnu"))]
 fn is_append_only(directory: &Path) -> bool {
     use std::os::unix::ffi::OsStrExt;
     let Ok(name) = std::ffi::CString::new(directory.as_os_str().as_bytes()) else {
         return false;
     };
-    // SAFETY: a struct of numbers, of which zero is a value.
+    // SAFETY: a struct of numbers, for which zero is valid.
     let mut about: libc::statx = unsafe { std::mem::zeroed() };
-    // SAFETY: the name ends in a zero, and there is room for what is asked.
-    let asked = unsafe { libc::statx(libc::AT_FDCWD, name.as_ptr(), 0, 0, &raw mut about) };
-    asked == 0 && about.stx_attributes & libc::STATX_ATTR_APPEND as u64 != 0
+    // SAFETY: the name ends in a zero, and the struct has room for the result.
+    let status = unsafe { libc::statx(libc::AT_FDCWD, name.as_ptr(), 0, 0, &raw mut about) };
+    status == 0 && about.stx_attributes & libc::STATX_ATTR_APPEND as u64 != 0
 }
 
-/// There the first file that cannot be removed tells.
+/// On other systems the removal of the first file shows it.
 #[cfg(not(all(target_os = "linux", target_env = "gnu")))]
 fn is_append_only(_directory: &Path) -> bool {
     false
@@ -463,7 +465,7 @@ fn take_after(_file: &File, _old: &Metadata) -> io::Result<()> {
     Ok(())
 }
 
-/// What has the name `path`, symlinks followed.
+/// The destination at `path`, with symlinks followed.
 fn place_of(path: &Path) -> Result<Place> {
     const MOST_LINKS: u32 = 40;
     let is_a_directory = || failed(path, "is a directory", "name a file");
@@ -489,7 +491,7 @@ fn place_of(path: &Path) -> Result<Place> {
     }
     Err(failed(
         path,
-        "cannot be written: its symlinks lead to no file",
+        "cannot be written: too many symlinks",
         "name a file",
     ))
 }

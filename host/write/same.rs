@@ -1,4 +1,4 @@
-//! Which names are one file, whatever they are called: by another spelling, a symlink or a hard link.
+//! Which names are the same file: by another spelling, a symlink or a hard link.
 
 use std::path::{Path, PathBuf};
 
@@ -7,11 +7,11 @@ use super::output::Output;
 use crate::error::{Error, Result};
 use crate::shown::shown_path;
 
-/// Refuses outputs of which two are the same file, or both standard output.
+/// Fails if two outputs are the same file, or both standard output.
 ///
 /// # Errors
 ///
-/// [`Error::OutputRefused`] names both.
+/// [`Error::OutputRefused`], which names both.
 pub fn refuse_clashes(outputs: &[&Output]) -> Result<()> {
     for (index, one) in outputs.iter().enumerate() {
         for other in &outputs[..index] {
@@ -35,11 +35,11 @@ pub fn refuse_clashes(outputs: &[&Output]) -> Result<()> {
     Ok(())
 }
 
-/// Refuses outputs that would replace what was read, or add to it.
+/// Fails if an output would replace an input, or be appended to it.
 ///
 /// # Errors
 ///
-/// [`Error::OutputRefused`] names both.
+/// [`Error::OutputRefused`], which names both.
 pub fn refuse_inputs(outputs: &[&Output], inputs: &[PathBuf]) -> Result<()> {
     for output in outputs {
         let identity = output.identity();
@@ -56,7 +56,7 @@ pub fn refuse_inputs(outputs: &[&Output], inputs: &[PathBuf]) -> Result<()> {
     Ok(())
 }
 
-/// What a person calls an output.
+/// An output's name for messages.
 fn name(output: &Output) -> String {
     if output.path() == Path::new("-") {
         "on standard output".into()

@@ -1,4 +1,4 @@
-//! What encoders write into.
+//! The file that encoders write to.
 
 use std::cell::OnceCell;
 use std::fs::File;
@@ -7,18 +7,18 @@ use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 /// The first error of a [`Sink`].
 pub(super) type Trouble = OnceCell<io::Error>;
 
-/// A file that remembers its first error, and swallows all that comes after it.
+/// A file that records its first error and ignores all writes after it.
 ///
-/// Encoders write from where they cannot report an error, or panic at one, or make another of it.
+/// Some encoders write where they cannot report an error, panic at one, or turn it into another.
 pub(super) struct Sink<'a> {
     file: BufWriter<&'a mut File>,
     trouble: &'a Trouble,
-    /// Where the next byte goes.
+    /// The position of the next byte.
     position: u64,
 }
 
 impl<'a> Sink<'a> {
-    /// What a sink has room for, in bytes.
+    /// The size of a sink's buffer, in bytes.
     pub(super) const BUFFER: usize = 1 << 20;
 
     pub(super) fn new(file: &'a mut File, trouble: &'a Trouble) -> Self {
@@ -29,7 +29,7 @@ impl<'a> Sink<'a> {
         }
     }
 
-    /// Empties the file.
+    /// Truncates the file to nothing.
     pub(super) fn clear(&mut self) {
         self.run(|file| {
             file.flush()?;
@@ -43,7 +43,7 @@ impl<'a> Sink<'a> {
         if self.trouble.get().is_none()
             && let Err(error) = action(&mut self.file)
         {
-            // It was empty.
+            // It was not set, as checked above.
             let _ = self.trouble.set(error);
         }
     }

@@ -1,4 +1,5 @@
-//! What is written into as it is: pipes, devices, sockets, and what this process has open.
+//! Streams: pipes, devices, sockets, and open files of this process, which are written to and never
+//! replaced.
 
 use std::fs::{self, File, OpenOptions};
 use std::io;
@@ -7,18 +8,18 @@ use std::path::{Path, PathBuf};
 use super::directory_of;
 use super::waiting::{Waiting, put};
 
-/// Something that is written into as it is.
+/// Something that is written to and never replaced.
 #[derive(Debug)]
 pub(super) struct Stream {
     path: PathBuf,
     #[cfg(feature = "lab")]
     is_stdout: bool,
-    /// `None` for a pipe that nobody reads yet: opening that waits for a reader.
+    /// `None` for a pipe without a reader: opening it would wait for one.
     opened: Option<File>,
 }
 
 impl Stream {
-    /// Opens what `path` names, if that can be without waiting.
+    /// Opens the stream at `path`, if that is possible without waiting.
     pub(super) fn new(path: &Path) -> io::Result<Self> {
         Ok(Self {
             path: path.into(),
@@ -28,7 +29,7 @@ impl Stream {
         })
     }
 
-    /// Whether it is standard output, by another name than `-`.
+    /// Whether it is standard output under another name than `-`.
     #[cfg(feature = "lab")]
     pub(super) fn is_stdout(&self) -> bool {
         self.is_stdout
@@ -39,7 +40,7 @@ impl Stream {
         self.fill(|write| write(bytes))
     }
 
-    /// Writes what `pieces` gives to the function that it is given.
+    /// Calls `pieces` with a function that writes to the stream.
     pub(super) fn fill(
         &self,
         pieces: impl FnOnce(&mut dyn FnMut(&[u8]) -> io::Result<()>) -> io::Result<()>,
@@ -57,8 +58,8 @@ impl Stream {
     }
 }
 
-/// The number of the open file of this process that `path` names, as `/dev/fd/1` does. A link to one is no other
-/// file: renaming one onto what it leads to would not reach whoever reads it.
+/// The number of this process's open file that `path` names, as `/dev/fd/1` does. Such a path must
+/// not be replaced: a file renamed onto its target would not reach the reader.
 pub(super) fn of_this_process(path: &Path) -> Option<u32> {
     let directory = directory_of(path);
     let number = path.file_name()?.to_str()?.parse().ok()?;
@@ -69,7 +70,7 @@ pub(super) fn of_this_process(path: &Path) -> Option<u32> {
     own.then_some(number)
 }
 
-/// As [`of_this_process`], symlinks followed.
+/// [`of_this_process`], with symlinks followed.
 fn own_number(path: &Path) -> Option<u32> {
     const MOST_LINKS: u32 = 40;
     let mut target = path.to_path_buf();
@@ -83,7 +84,7 @@ fn own_number(path: &Path) -> Option<u32> {
     None
 }
 
-/// Standard output, as another open file that goes on where this process is in it.
+/// Standard output as a second handle that shares its position.
 #[cfg(unix)]
 pub(super) fn stdout() -> io::Result<File> {
     use std::os::fd::AsFd;
@@ -92,12 +93,12 @@ pub(super) fn stdout() -> io::Result<File> {
     Ok(file)
 }
 
-/// Opens what is written into as it is, at its end; `None` for a pipe without a reader.
+/// Opens a stream for appending; `None` for a pipe without a reader.
 #[cfg(unix)]
 fn open(path: &Path) -> io::Result<Option<File>> {
     use std::os::fd::{AsFd, OwnedFd};
     use std::os::unix::fs::{FileTypeExt, OpenOptionsExt};
-    // A copy of what is open; a socket can only be had that way.
+    // Duplicates the open file; a socket can only be reached that way.
     match own_number(path) {
         Some(1) => return stdout().map(Some),
         Some(2) => {
@@ -118,7 +119,7 @@ fn open(path: &Path) -> io::Result<Option<File>> {
     match opened {
         Ok(file) => {
             let flags = flags(&file)?;
-            // SAFETY: only flags of a file that is open are set.
+            // SAFETY: only sets flags of an open file.
             let set = unsafe {
                 use std::os::fd::AsRawFd;
                 libc::fcntl(file.as_raw_fd(), libc::F_SETFL, flags & !libc::O_NONBLOCK)
@@ -128,7 +129,7 @@ fn open(path: &Path) -> io::Result<Option<File>> {
             }
             Ok(Some(file))
         }
-        // A pipe without a reader; a device would be without a driver.
+        // A pipe without a reader; for a device the error means that it has no driver.
         Err(error) if error.raw_os_error() == Some(libc::ENXIO) && is_pipe(path) => Ok(None),
         Err(error) => Err(error),
     }
@@ -143,14 +144,14 @@ fn is_pipe(path: &Path) -> bool {
 #[cfg(unix)]
 fn flags(file: &File) -> io::Result<i32> {
     use std::os::fd::AsRawFd;
-    // SAFETY: only flags of a file that is open are asked for.
+    // SAFETY: only reads flags of an open file.
     match unsafe { libc::fcntl(file.as_raw_fd(), libc::F_GETFL) } {
         flags if flags < 0 => Err(io::Error::last_os_error()),
         flags => Ok(flags),
     }
 }
 
-/// Standard output may be open for reading only, and then takes nothing without saying so.
+/// Standard output may be open for reading only, and would then drop everything silently.
 #[cfg(unix)]
 fn check_writable(file: &File) -> io::Result<()> {
     if flags(file)? & libc::O_ACCMODE == libc::O_RDONLY {

@@ -1,7 +1,7 @@
-//! Files under a temporary name, beside the place that they are for.
+//! Temporary files, in the directory of the file that they become.
 //!
-//! Each is locked for as long as its writer lives, so that a name like theirs whose lock can be taken was left by a
-//! run that was killed: the next one that writes to the directory removes it.
+//! Each is locked while its writer lives. So a file with such a name whose lock can be taken was
+//! left by a run that was killed: the next run that writes to the directory removes it.
 
 use std::ffi::OsStr;
 use std::fs::{self, File, OpenOptions, TryLockError};
@@ -15,25 +15,26 @@ const PREFIX: &str = ".spherule-";
 const SUFFIX: &str = ".part";
 const RANDOM: usize = 6;
 
-/// The temporary files that there are now. Who holds the lock makes, renames and removes them.
+/// The temporary files of this process. Whoever holds the lock may create, rename and remove them.
 static LIVE: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
 fn live() -> MutexGuard<'static, Vec<PathBuf>> {
     LIVE.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// A file under a temporary name; dropped, it is gone.
+/// A temporary file; it is removed when dropped.
 #[derive(Debug)]
 pub(super) struct Temporary {
     file: Option<NamedTempFile>,
 }
 
 impl Temporary {
-    /// A new file in `directory`, with what rights any new file gets.
+    /// Creates a file in `directory`, with the permissions of any new file.
     pub(super) fn in_directory(directory: &Path) -> io::Result<Self> {
         let mut builder = tempfile::Builder::new();
         builder.prefix(PREFIX).suffix(SUFFIX).rand_bytes(RANDOM);
-        // What any new file gets, less the umask, instead of a temporary file's privacy.
+        // The permissions of any new file, less the umask, instead of a temporary file's private
+        // ones.
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
         loop {
@@ -41,9 +42,9 @@ impl Temporary {
             let file = builder.tempfile_in(directory)?;
             match file.as_file().try_lock() {
                 Ok(()) if !is_linked(file.as_file()) => {}
-                // Another run looks whether the file is dead, and removes it.
+                // Another run checks whether the file is dead, and removes it.
                 Err(TryLockError::WouldBlock) => {}
-                // A file system without locks: nobody else can take this one either.
+                // On a file system without locks nobody else can take it either.
                 Ok(()) | Err(TryLockError::Error(_)) => {
                     live.push(file.path().into());
                     return Ok(Self { file: Some(file) });
@@ -59,8 +60,9 @@ impl Temporary {
         }
     }
 
-    /// Gives the file the name `target`, which has either the old content or the new one at any time, even if the
-    /// machine stops. Where a file that may be written cannot be replaced, it is written instead.
+    /// Renames the file to `target`. At any time the name has either the old content or the new
+    /// one, even if the machine stops. If a writable file cannot be replaced, it is overwritten
+    /// instead.
     pub(super) fn rename_to(mut self, target: &Path) -> Result<(), Unnamed> {
         sync(self.file()?)?;
         let mut live = live();
@@ -68,7 +70,7 @@ impl Temporary {
             return Err(io::Error::from(io::ErrorKind::NotFound).into());
         };
         let path = file.path().to_path_buf();
-        // Under the other name nobody removes it, whatever becomes of this process.
+        // Under the new name nobody removes it, whatever happens to this process.
         let refused = match file.persist(target) {
             Ok(_) => None,
             Err(refused) => Some((keep(refused.file, target), refused.error)),
@@ -101,7 +103,7 @@ impl Temporary {
         Ok(sync_directory(super::directory_of(target))?)
     }
 
-    /// Removes the file; says which it is if it stays.
+    /// Removes the file. The error names it if it stays.
     pub(super) fn remove(mut self) -> Result<(), (io::Error, PathBuf)> {
         let Some(file) = self.file.take() else {
             return Ok(());
@@ -114,13 +116,13 @@ impl Temporary {
     }
 }
 
-/// Why a file does not have its name.
+/// Why a file was not renamed.
 #[derive(Debug)]
 pub(super) struct Unnamed {
     pub(super) error: io::Error,
-    /// What it is called instead, if it is whole.
+    /// The file's name instead, if it is complete.
     pub(super) kept: Option<PathBuf>,
-    /// Whether what has the name was overwritten in part.
+    /// Whether the file at the target was partly overwritten.
     pub(super) is_cut: bool,
 }
 
@@ -134,7 +136,8 @@ impl From<io::Error> for Unnamed {
     }
 }
 
-/// Writes what is in `file` into `target`, if that is a file which the system does not replace.
+/// Overwrites `target` with the content of `file`, if `target` is a file that the system does not
+/// replace.
 fn write_in_place(file: &mut File, target: &Path, refused: &io::Error) -> Option<io::Result<()>> {
     let is_irreplaceable = matches!(
         refused.kind(),
@@ -147,7 +150,8 @@ fn write_in_place(file: &mut File, target: &Path, refused: &io::Error) -> Option
     }
     let mut options = OpenOptions::new();
     options.write(true);
-    // Whose directory it is may put a symlink there meanwhile, to what only this user may write.
+    // The directory's owner could meanwhile place a symlink there, to a file that only this user
+    // may write.
     #[cfg(unix)]
     std::os::unix::fs::OpenOptionsExt::custom_flags(&mut options, libc::O_NOFOLLOW);
     let mut place = options.open(target).ok()?;
@@ -163,7 +167,8 @@ fn write_in_place(file: &mut File, target: &Path, refused: &io::Error) -> Option
     Some(write())
 }
 
-/// Gives a file that did not become `target` a name under which the next run does not remove it; `None` if it is not there any more.
+/// Renames a file that could not become `target`, so that the next run does not remove it; `None`
+/// if it no longer exists.
 fn keep(file: NamedTempFile, target: &Path) -> Option<(File, PathBuf)> {
     let (file, path) = file.keep().ok()?;
     let name = path.file_name().and_then(OsStr::to_str).unwrap_or_default();
@@ -193,8 +198,8 @@ impl Drop for Temporary {
     }
 }
 
-/// Removes every temporary file of this process. No other is made, and none is renamed, until the guard is dropped:
-/// a process that is about to end keeps it.
+/// Removes every temporary file of this process. No other is created or renamed until the guard is
+/// dropped; a process that is about to end keeps it.
 #[cfg(feature = "cli")]
 #[must_use]
 pub(crate) fn remove_all() -> impl Sized {
@@ -205,14 +210,14 @@ pub(crate) fn remove_all() -> impl Sized {
     live
 }
 
-/// Removes from `directory` what runs of the user that owns `own` left when they were killed.
+/// Removes from `directory` the temporary files of killed runs of the user that owns `own`.
 pub(super) fn remove_dead(directory: &Path, own: &mut Temporary) {
     let Some(own) = own.file().ok().and_then(|file| file.metadata().ok()) else {
         return;
     };
     for entry in fs::read_dir(directory).into_iter().flatten().flatten() {
         if is_temporary(&entry.file_name()) {
-            // What cannot be told or removed stays; it harms nobody.
+            // A file that cannot be checked or removed stays; it does no harm.
             let _ = remove_if_dead(&entry.path(), &own);
         }
     }
@@ -230,7 +235,7 @@ fn remove_if_dead(path: &Path, own: &fs::Metadata) -> io::Result<()> {
     Ok(())
 }
 
-/// Whether a file has a name as [`Temporary`] gives them.
+/// Whether a file's name is one that [`Temporary`] gives.
 fn is_temporary(name: &OsStr) -> bool {
     name.to_str()
         .and_then(|name| name.strip_prefix(PREFIX)?.strip_suffix(SUFFIX))
@@ -245,7 +250,7 @@ fn is_linked(file: &File) -> bool {
     file.metadata().is_ok_and(|about| about.nlink() > 0)
 }
 
-/// An open file cannot be removed there.
+/// On other systems an open file cannot be removed.
 #[cfg(not(unix))]
 fn is_linked(_file: &File) -> bool {
     true
@@ -257,13 +262,13 @@ fn has_owner_of(one: &fs::Metadata, other: &fs::Metadata) -> bool {
     one.uid() == other.uid()
 }
 
-/// Only the owner can take the lock and remove the file.
+/// On other systems only the owner can take the lock and remove the file.
 #[cfg(not(unix))]
 fn has_owner_of(_one: &fs::Metadata, _other: &fs::Metadata) -> bool {
     true
 }
 
-/// Waits until the file is on the disk, where the file system can say so.
+/// Waits until the file is on the disk, if the file system supports it.
 fn sync(file: &File) -> io::Result<()> {
     match file.sync_all() {
         Err(error)
@@ -280,11 +285,11 @@ fn sync(file: &File) -> io::Result<()> {
 
 #[cfg(unix)]
 fn sync_directory(directory: &Path) -> io::Result<()> {
-    // A directory may be written without being read.
+    // A directory may be writable but not readable.
     File::open(directory).map_or(Ok(()), |directory| sync(&directory))
 }
 
-/// A directory is no file that can be waited for there.
+/// On other systems directories cannot be synchronised.
 #[cfg(not(unix))]
 fn sync_directory(_directory: &Path) -> io::Result<()> {
     Ok(())

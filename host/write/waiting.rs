@@ -1,21 +1,22 @@
-//! What waits for somebody else: for a pipe's reader, or for room in a pipe that nobody empties.
+//! Calls that may block because of another process: they wait for a pipe's reader, or for room in a
+//! pipe.
 //!
-//! Who wants the process to end need not wait with it.
+//! A signal that ends the process does not wait for them.
 
 use std::io::{self, Write};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-/// Since when each one waits.
+/// When each current call began.
 static SINCE: Mutex<Vec<Instant>> = Mutex::new(Vec::new());
-/// What is written at once, in bytes, so that a slow reader is told from none.
+/// The most bytes that are written at once, which tells a slow reader from none.
 const PIECE: usize = 1 << 14;
 
 fn since() -> MutexGuard<'static, Vec<Instant>> {
     SINCE.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// A call that may wait for somebody else.
+/// A call that may block because of another process.
 #[derive(Debug)]
 pub(crate) struct Waiting(Instant);
 
@@ -37,13 +38,16 @@ impl Drop for Waiting {
     }
 }
 
-/// How long the longest call that waits now has waited.
-#[cfg_attr(not(feature = "cli"), expect(dead_code, reason = "the command asks"))]
+/// How long the longest of the current calls has waited; `None` if there is none.
+#[cfg_attr(
+    not(feature = "cli"),
+    expect(dead_code, reason = "only the command uses it")
+)]
 pub(crate) fn longest() -> Option<Duration> {
     since().iter().map(Instant::elapsed).max()
 }
 
-/// Writes all of `bytes` to who may not read them.
+/// Writes all of `bytes` to a reader that may not read them.
 pub(super) fn put(mut stream: impl Write, bytes: &[u8]) -> io::Result<()> {
     for piece in bytes.chunks(PIECE) {
         let _waiting = Waiting::begin();
