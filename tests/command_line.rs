@@ -173,7 +173,7 @@ fn devices_are_listed() {
         .arg("devices")
         .assert()
         .success()
-        .stdout(contains("CPU, ").and(contains("* chosen by --device auto")));
+        .stdout(contains("CPU, ").and(contains("* --device auto takes this one")));
     let output = spherule()
         .args(["devices", "--json"])
         .output()
@@ -241,14 +241,14 @@ fn wrong_input_is_refused_with_its_place() {
         (
             write("picture.bmp", b""),
             "picture.bmp",
-            "not a kind of file",
+            "not a file format",
         ),
         (
             dir.path().join("nowhere.toml"),
             "nowhere.toml",
             "no such file",
         ),
-        (dir.path().to_path_buf(), "", "not a kind of file"),
+        (dir.path().to_path_buf(), "", "not a file format"),
     ];
     for (input, place, message) in cases {
         let out = dir.path().join("out.png");

@@ -322,7 +322,7 @@ fn an_environment_is_read_and_seen_where_it_is() {
         refused
             .expect_err("8 bits")
             .to_string()
-            .contains("no image that spherule reads")
+            .contains("not an image that spherule reads")
     );
 }
 

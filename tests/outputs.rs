@@ -82,7 +82,11 @@ fn outputs_are_checked_before_the_work() {
         ),
         (&ACCURACY, &["--json", "protected.png"], "is read-only"),
         (&BENCH, &["--json", "no/n.json"], "there is no directory no"),
-        (&BENCH, &["--export", "scene.toml/folder"], "cannot be created"),
+        (
+            &BENCH,
+            &["--export", "scene.toml/folder"],
+            "cannot be created",
+        ),
     ];
     for (command, rest, message) in cases {
         spherule(path)

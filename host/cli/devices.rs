@@ -56,6 +56,6 @@ fn table(adapters: &[AdapterReport], threads: usize) -> String {
     if adapters.is_empty() {
         text.push_str("  no GPU adapter: this system has no graphics driver that wgpu can use\n");
     }
-    text.push_str("* chosen by --device auto\n");
+    text.push_str("* --device auto takes this one\n");
     text
 }

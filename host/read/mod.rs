@@ -1,8 +1,8 @@
-//! Files: what a scene is read from.
+//! Readers of the files that a scene comes from.
 //!
 //! | module | reads |
 //! | --- | --- |
-//! | [`toml`] | scenes written by a person, which may name other files |
+//! | [`toml`] | scenes in TOML, which may name other files |
 //! | [`particles`] | atoms, in one of several formats |
 //! | [`environment`] | images of the surroundings |
 //! | `text` | text files of any size, compressed or not |
@@ -27,7 +27,7 @@ impl Scene {
     ///
     /// # Errors
     ///
-    /// [`Error::Scene`] says which file is wrong, where in it, and how to mend it.
+    /// [`Error::Scene`] says which file is wrong, where, and how to fix it.
     pub fn load(path: impl AsRef<Path>) -> Result<Self> {
         let path = path.as_ref();
         let mut scene = if is_scene(path) {
@@ -37,7 +37,7 @@ impl Scene {
         } else {
             return Err(Error::Scene(SceneError::without_place(
                 path,
-                "not a kind of file that spherule reads",
+                "not a file format that spherule reads",
                 format!("give a {}", inputs()),
             )));
         };
@@ -46,13 +46,13 @@ impl Scene {
     }
 }
 
-/// Whether a file is a scene by its name.
+/// Whether the file's name is that of a scene.
 #[must_use]
 pub fn is_scene(path: &Path) -> bool {
     extension(uncompressed(path)) == SCENE
 }
 
-/// What may be given where a scene is asked for: `scene (.toml) or molecule (.pdb, …)`.
+/// The accepted inputs, for messages: `scene (.toml) or molecule (.pdb, …)`.
 #[must_use]
 pub fn inputs() -> String {
     let molecules = particles::extensions();

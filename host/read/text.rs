@@ -1,4 +1,4 @@
-//! Text files, large ones read by all threads.
+//! Reads text files; large ones on all threads.
 
 use std::fs::File;
 use std::io::{self, Read};
@@ -14,13 +14,13 @@ use crate::memory;
 ///
 /// # Errors
 ///
-/// [`Error::Scene`] if there is none, or it is no text.
+/// [`Error::Scene`] if the file does not exist, or is not text.
 pub(super) fn read_text(path: &Path) -> Result<String> {
     let bytes = read_bytes(path).map_err(|error| {
         let (message, help) = match error.kind() {
             io::ErrorKind::NotFound => (
                 "there is no such file".to_owned(),
-                "check the name; a relative name counts from the current directory, or, inside a scene, from the scene's",
+                "check the name; a relative name starts from the current directory or, inside a scene, from the scene's directory",
             ),
             io::ErrorKind::IsADirectory => (
                 "is a directory".to_owned(),
@@ -28,19 +28,19 @@ pub(super) fn read_text(path: &Path) -> Result<String> {
             ),
             io::ErrorKind::UnexpectedEof => (
                 "ends too early".to_owned(),
-                "wait until whoever writes it is done, or fetch it again",
+                "wait until it is completely written, or get it again",
             ),
             io::ErrorKind::InvalidData => (
-                format!("is compressed, and not rightly: {error}"),
-                "fetch it again, or compress it by gzip",
+                format!("cannot be decompressed: {error}"),
+                "get it again, or compress it with gzip",
             ),
             io::ErrorKind::OutOfMemory => (
-                "there is no memory to read it".to_owned(),
+                "there is not enough memory to read it".to_owned(),
                 "use a machine with more memory",
             ),
             _ => (
                 format!("cannot be read: {error}"),
-                "check that the file may be read",
+                "check the file's permissions",
             ),
         };
         SceneError::without_place(path, message, help)
@@ -48,7 +48,7 @@ pub(super) fn read_text(path: &Path) -> Result<String> {
     if bytes.first() == Some(&0) {
         return Err(Error::Scene(SceneError::without_place(
             path,
-            "is no text: it begins with a byte of zero",
+            "is not text: it begins with a byte of zero",
             "name a text file; UTF-16 must be converted to UTF-8 first",
         )));
     }
@@ -66,22 +66,23 @@ pub(super) fn read_text(path: &Path) -> Result<String> {
     })
 }
 
-/// Files from this size on are read by all threads.
+/// Files from this size on are read on all threads.
 const LARGE_FILE: u64 = 1 << 24;
-/// What each reads at once.
+/// Bytes that a thread reads at once.
 const PIECE: usize = 1 << 22;
 
-/// What files begin with that hold another one compressed (RFC 1952).
+/// The first bytes of a compressed file (RFC 1952).
 const GZIP: &[u8] = &[0x1f, 0x8b];
 
-/// Reads a whole file, what it holds if it is compressed; of one that begins with a byte of zero, that byte.
+/// Reads a whole file, decompressed if it is compressed. Of a file that begins with a zero byte,
+/// only that byte may be read.
 fn read_bytes(path: &Path) -> io::Result<Vec<u8>> {
     let bytes = read_as_they_are(path)?;
     if !bytes.starts_with(GZIP) {
         return Ok(bytes);
     }
     let (mut inner, mut left) = (Vec::new(), &bytes[..]);
-    // Some have zeros behind the last member, to fill a block.
+    // Some files have zeros after the last member, to fill a block.
     while left.iter().any(|byte| *byte != 0) {
         let mut member = GzDecoder::new(left);
         read_stream(&mut member, &mut inner).map_err(|error| match error.kind() {
@@ -100,7 +101,7 @@ fn read_as_they_are(path: &Path) -> io::Result<Vec<u8>> {
         let length = usize::try_from(length).map_err(|_| io::ErrorKind::OutOfMemory)?;
         return read_in_pieces(&file, length, PIECE);
     }
-    // What is no file has a length of zero, may be opened once only, and need not have an end.
+    // A pipe or device has a length of zero, may be opened only once, and may never end.
     let mut bytes = Vec::new();
     file.by_ref().take(1).read_to_end(&mut bytes)?;
     if bytes != [0] {
@@ -109,7 +110,7 @@ fn read_as_they_are(path: &Path) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// Reads what need not have an end, for as long as there is memory for it.
+/// Reads a stream that may never end, for as long as there is memory.
 fn read_stream(stream: &mut impl Read, bytes: &mut Vec<u8>) -> io::Result<()> {
     loop {
         let room = bytes.len().max(PIECE);
@@ -124,9 +125,9 @@ fn read_stream(stream: &mut impl Read, bytes: &mut Vec<u8>) -> io::Result<()> {
     }
 }
 
-/// Reads `length` bytes, `piece` at once.
+/// Reads `length` bytes, `piece` bytes at a time.
 fn read_in_pieces(file: &File, length: usize, piece: usize) -> io::Result<Vec<u8>> {
-    // Zeros that the system gives as such: no thread writes them.
+    // The system provides the zeros: no thread writes them.
     let mut bytes: Vec<u8> =
         bytemuck::allocation::try_zeroed_vec(length).map_err(|()| io::ErrorKind::OutOfMemory)?;
     bytes
@@ -154,7 +155,7 @@ fn read_at(file: &File, mut bytes: &mut [u8], mut offset: u64) -> io::Result<()>
     Ok(())
 }
 
-/// The extension of files that hold another file compressed, which every reader of text takes.
+/// The extension of compressed files, which every reader of text accepts.
 pub(super) const COMPRESSED: &str = "gz";
 
 /// A file's extension, in lower case.
@@ -163,7 +164,7 @@ pub(super) fn extension(path: &Path) -> String {
     extension.to_string_lossy().to_lowercase()
 }
 
-/// The name of what a compressed file holds; that of another file as it is.
+/// The name of a file without the extension of a compressed file.
 pub(crate) fn uncompressed(path: &Path) -> &Path {
     match path.file_stem() {
         Some(inner) if extension(path) == COMPRESSED => Path::new(inner),
@@ -190,7 +191,7 @@ mod tests {
         assert_eq!(error.kind(), io::ErrorKind::UnexpectedEof);
     }
 
-    /// What a person may name in place of a file.
+    /// Inputs that a user may name by mistake.
     #[test]
     fn what_is_no_text_is_refused() {
         let folder = tempfile::tempdir().expect("a folder");
@@ -214,7 +215,7 @@ mod tests {
         assert!(error.contains("is a directory"), "{error}");
     }
 
-    /// Pipes are opened once, and what has no end is not waited for.
+    /// Pipes are opened only once, and a stream that never ends is not read to the end.
     #[cfg(unix)]
     #[test]
     fn streams_are_read() {

@@ -1,7 +1,7 @@
-//! Images of the surroundings: equirectangular, as `.hdr` or `.exr` files.
+//! Reads images of the surroundings: equirectangular, as `.hdr` or `.exr` files.
 //!
-//! A file's header is looked at before anything is made room for or decoded: what it claims must be
-//! within [`MAX_TEXELS`] and no more than a file of its length can hold.
+//! A file's header is checked before memory is allocated or anything is decoded: the size that it
+//! claims must be within [`MAX_TEXELS`], and possible for a file of its length.
 
 mod open_exr;
 mod radiance;
@@ -21,18 +21,18 @@ use crate::scene::surroundings::EnvironmentImage;
 
 /// Bytes of a file that are read at once.
 const BUFFER: usize = 1 << 20;
-/// The most bytes of what is no file, such as a pipe: the largest image, uncompressed.
+/// The most bytes of a pipe or another stream: the largest image, uncompressed.
 const MAX_STREAM: u64 = 16 * MAX_TEXELS;
 
-/// Below zero by less than this, a texel's channel is taken for zero: lossy compression and
-/// resampling leave such ones where there is no light.
+/// A channel of a texel that is below zero by less than this is taken as zero: lossy compression
+/// and resampling produce such values where there is no light.
 const RINGING: f32 = 1e-3;
 
 /// Reads the image at `path` and multiplies it by `strength`.
 ///
 /// # Errors
 ///
-/// [`Error::Scene`] if it cannot be read, is too large, or holds what light cannot be.
+/// [`Error::Scene`] if it cannot be read, is too large, or holds values that are not light.
 pub fn load(path: &Path, strength: f32) -> Result<EnvironmentImage> {
     let in_file =
         |wrong: Wrong| Error::Scene(SceneError::without_place(path, wrong.message, wrong.help));
@@ -41,7 +41,7 @@ pub fn load(path: &Path, strength: f32) -> Result<EnvironmentImage> {
     Ok(image)
 }
 
-/// What is wrong with an image, and how to mend it.
+/// What is wrong with an image, and how to fix it.
 struct Wrong {
     message: String,
     help: String,
@@ -55,7 +55,7 @@ impl Wrong {
         }
     }
 
-    /// The file is damaged, as a decoder says.
+    /// The error for a damaged file, with a decoder's message.
     fn damaged(reason: impl std::fmt::Display) -> Self {
         Self::new(
             format!("cannot be decoded: {reason}"),
@@ -67,7 +67,7 @@ impl Wrong {
 trait Source: Read + Seek {}
 impl<T: Read + Seek> Source for T {}
 
-/// A file that may be read anywhere, and its length in bytes.
+/// A file that can be read anywhere, and its length in bytes.
 struct Opened {
     file: BufReader<Box<dyn Source>>,
     length: u64,
@@ -78,7 +78,7 @@ fn open(path: &Path) -> Result<Opened, Wrong> {
         io::ErrorKind::IsADirectory => Wrong::new("is a directory", "name an image"),
         _ => Wrong::new(
             format!("cannot be opened: {error}"),
-            "a relative name counts from the scene's directory",
+            "a relative name starts from the scene's directory",
         ),
     };
     let mut file = File::open(path).map_err(wrong)?;
@@ -114,13 +114,13 @@ fn decode(mut opened: Opened) -> Result<EnvironmentImage, Wrong> {
         [0x76, 0x2f, 0x31, 0x01] if is_whole => open_exr::decode(opened.file, opened.length),
         [b'#', b'?', _, _] if is_whole => radiance::decode(opened.file, opened.length),
         _ => Err(Wrong::new(
-            "is no image that spherule reads",
+            "is not an image that spherule reads",
             "give an equirectangular image as .hdr or .exr",
         )),
     }
 }
 
-/// Room for this many texels, all of them black.
+/// Allocates this many texels, all black.
 fn room_for(width: u64, height: u64) -> Result<Vec<Vec3>, Wrong> {
     let help = "use a smaller image of the surroundings";
     if width == 0 || height == 0 {
@@ -138,7 +138,7 @@ fn room_for(width: u64, height: u64) -> Result<Vec<Vec3>, Wrong> {
             help,
         ));
     };
-    // The system gives zeros as such: no memory is taken before texels are written.
+    // The system provides the zeros: no memory is used before texels are written.
     bytemuck::allocation::try_zeroed_vec(count as usize).map_err(|()| {
         let bytes = count * size_of::<Vec3>() as u64;
         Wrong::new(
@@ -150,7 +150,7 @@ fn room_for(width: u64, height: u64) -> Result<Vec<Vec3>, Wrong> {
     })
 }
 
-/// Multiplies the texels, and refuses what light cannot be.
+/// Multiplies the texels, and fails for values that are not light.
 fn multiply(image: &mut EnvironmentImage, strength: f32) -> Result<(), Wrong> {
     let width = image.width as usize;
     let wrong = image
@@ -183,7 +183,7 @@ fn multiply(image: &mut EnvironmentImage, strength: f32) -> Result<(), Wrong> {
             ),
         )
     } else {
-        Wrong::new(at, "light is finite and not below zero: mend the image")
+        Wrong::new(at, "light must be finite and not negative: fix the image")
     })
 }
 
@@ -191,21 +191,21 @@ thread_local! {
     static IS_DECODING: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Whether this thread is inside a decoder whose panic is caught and reported as an [`Error`]; a
-/// panic hook can then keep quiet.
+/// Whether this thread is inside a decoder whose panic will be caught and reported as an [`Error`].
+/// A panic hook can then stay silent.
 #[must_use]
 pub fn is_decoding() -> bool {
     IS_DECODING.get()
 }
 
-/// What `decode` returns, or a refusal where it panics: decoders of other people are given files of
-/// unknown origin, and a damaged image is no mistake of this program's.
+/// Calls `decode`, and turns a panic into an error: decoders from other crates are given files of
+/// unknown origin, and a damaged image is not a bug in this program.
 fn guarded<T>(decode: impl FnOnce() -> Result<T, Wrong>) -> Result<T, Wrong> {
     let before = IS_DECODING.replace(true);
-    // What the closure leaves half done is dropped.
+    // Whatever the closure leaves half done is dropped.
     let decoded = catch_unwind(AssertUnwindSafe(decode));
     IS_DECODING.set(before);
-    decoded.unwrap_or_else(|_| Err(Wrong::damaged("its decoder gave up")))
+    decoded.unwrap_or_else(|_| Err(Wrong::damaged("its decoder panicked")))
 }
 
 #[cfg(test)]
@@ -218,7 +218,7 @@ mod tests {
     const WIDTH: usize = 40;
     const HEIGHT: usize = 24;
 
-    /// Halves, so that all lossless compressions keep them.
+    /// Half floats, so that all lossless compressions preserve them.
     fn color(x: usize, y: usize) -> Vec3 {
         Vec3::new(0.5, x as f32 / 32.0, y as f32 / 32.0)
     }
@@ -257,9 +257,9 @@ mod tests {
         encoded(Compression::Uncompressed, Blocks::ScanLines)
     }
 
-    /// With four numbers of a window in the header: the smallest x and y, the largest.
+    /// Replaces a window in the header: the smallest x and y, then the largest.
     fn with_window(mut bytes: Vec<u8>, name: &str, window: [i32; 4]) -> Vec<u8> {
-        // Another key: how many blocks there are follows from the window.
+        // Renames this key: the number of blocks then follows from the window.
         if let Some(at) = bytes.windows(10).position(|w| w == b"chunkCount") {
             bytes[at] = b'x';
         }
@@ -307,7 +307,7 @@ mod tests {
     #[test]
     fn the_image_is_the_display_window() {
         let (w, h) = (WIDTH as i32, HEIGHT as i32);
-        // Two columns to the left of the data and one row below; the rest of the data is outside.
+        // Two columns to the left of the data and one row below it; the other data are outside.
         let bytes = with_window(plain(), "displayWindow", [-2, 3, w - 6, h]);
         let image = load_bytes(&bytes).expect("an image");
         assert_eq!(
@@ -355,7 +355,7 @@ mod tests {
             refusal_of_huge.contains("100000 × 100000"),
             "{refusal_of_huge}"
         );
-        // Within the limit, but not within the file.
+        // Within the limit, but more than the file can hold.
         for compression in [
             Compression::ZIP16,
             Compression::DWAA(None),
@@ -384,7 +384,7 @@ mod tests {
             let refusal = refusal(file.as_bytes());
             assert!(refusal.contains(word), "{header}: {refusal}");
         }
-        // Against minutes and gigabytes.
+        // It could have taken minutes and gigabytes.
         assert!(start.elapsed() < Duration::from_secs(20));
     }
 
@@ -448,8 +448,8 @@ mod tests {
             ("B", floats(0.5)),
         ])]);
         assert!(refusal(&whole).contains("channel G holds whole numbers"));
-        assert!(refusal(b"GIF89a").contains("no image that spherule reads"));
-        assert!(refusal(b"").contains("no image that spherule reads"));
+        assert!(refusal(b"GIF89a").contains("not an image that spherule reads"));
+        assert!(refusal(b"").contains("not an image that spherule reads"));
     }
 
     #[test]
@@ -501,7 +501,7 @@ mod tests {
         }
     }
 
-    /// Bytes here and there are changed: nothing panics, and nothing takes long.
+    /// Some bytes are changed: nothing panics, and nothing takes long.
     #[test]
     fn no_damage_breaks_the_reader() {
         let mut random = Random::new(3);
@@ -525,7 +525,7 @@ mod tests {
         for round in 0..600 {
             let mut bytes = files[round % files.len()].clone();
             for _ in 0..1 + below(4) {
-                // Headers are short, and say most.
+                // Headers are short, and most effective.
                 let end = if below(2) == 0 {
                     400.min(bytes.len())
                 } else {

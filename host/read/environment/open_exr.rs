@@ -1,5 +1,5 @@
-//! `.exr` files: scan lines or tiles, of the first part that has R, G and B, at full
-//! resolution. The image is the display window; of it, the data window is filled.
+//! `.exr` files: scan lines or tiles, of the first part that has R, G and B, at full resolution.
+//! The image is the display window; the data window fills a part of it.
 
 use std::io::{BufRead, Seek};
 
@@ -19,14 +19,14 @@ use super::{Wrong, guarded, room_for};
 use crate::scene::limits::MAX_TEXELS;
 use crate::scene::surroundings::EnvironmentImage;
 
-/// The most bytes that all channels of the part decode to: those of the most texels, with four
+/// The most bytes that all channels of the part decode to: those of the most texels with four
 /// channels of 32 bits.
 const MAX_DECODED: u64 = 16 * MAX_TEXELS;
 /// The most bytes that one block decodes to.
 const MAX_BLOCK: u64 = 1 << 29;
-/// How many times as large as the data window the display window is at most: the rest is black.
+/// The display window is at most this many times as large as the data window; the rest is black.
 const MAX_MARGIN: u64 = 16;
-/// Blocks are decoded by all threads, so many bytes at once.
+/// Bytes of blocks that are decoded together, on all threads.
 const AT_ONCE: u64 = 1 << 26;
 
 pub(super) fn decode(file: impl BufRead + Seek, length: u64) -> Result<EnvironmentImage, Wrong> {
@@ -71,7 +71,7 @@ pub(super) fn decode(file: impl BufRead + Seek, length: u64) -> Result<Environme
     })
 }
 
-/// The first part with flat R, G and B.
+/// The first part that is not deep and has R, G and B.
 fn with_rgb(headers: &[Header]) -> Result<(usize, &Header), Wrong> {
     let part = headers
         .iter()
@@ -87,7 +87,7 @@ fn with_rgb(headers: &[Header]) -> Result<(usize, &Header), Wrong> {
     ))
 }
 
-/// The places of R, G and B among the channels.
+/// The positions of R, G and B among the channels.
 fn rgb(channels: &ChannelList) -> Option<[usize; 3]> {
     let place = |name: &str| {
         channels
@@ -98,28 +98,28 @@ fn rgb(channels: &ChannelList) -> Option<[usize; 3]> {
     Some([place("R")?, place("G")?, place("B")?])
 }
 
-/// How many times as long as a file a compressed image is at most.
+/// An upper bound on the compression ratio; `None` for a compression that is not supported.
 fn max_ratio(compression: Compression) -> Option<u64> {
-    // Deflate ends at 1032 (258 bytes for two bits).
+    // Deflate's limit is 1032 (258 bytes for two bits).
     const DEFLATE: u64 = 1032;
     match compression {
         Compression::Uncompressed => Some(1),
-        // 128 for two bytes.
+        // 128 bytes for two bytes.
         Compression::RLE => Some(64),
         Compression::ZIP1 | Compression::ZIP16 => Some(DEFLATE),
-        // Of four bytes the lowest is left out.
+        // The lowest of four bytes is dropped.
         Compression::PXR24 => Some(DEFLATE * 4 / 3),
-        // 255 numbers of 16 bits for a bit and a count of eight.
+        // 255 numbers of 16 bits for a bit and a count of eight bits.
         Compression::PIZ => Some(512),
         // 16 numbers of 16 bits for three bytes.
         Compression::B44 | Compression::B44A => Some(11),
-        // Of 8 × 8 texels' two or four bytes each, one number of 16 bits, deflated.
+        // One number of 16 bits, deflated, for 8 × 8 texels of two or four bytes each.
         Compression::DWAA(_) | Compression::DWAB(_) => Some(DEFLATE * 128),
         Compression::HTJ2K32 | Compression::HTJ2K256 => None,
     }
 }
 
-/// Bytes that a block decodes to at most; `None` for more than can be.
+/// The most bytes that a block decodes to; `None` if they exceed 64 bits.
 fn max_block_bytes(header: &Header) -> Option<u64> {
     let size = header.layer_size;
     let texels = match header.blocks {
@@ -135,13 +135,13 @@ fn max_block_bytes(header: &Header) -> Option<u64> {
     (texels? as u64).checked_mul(header.channels.bytes_per_pixel as u64)
 }
 
-/// Refuses what the header says, before anything is decoded.
+/// Checks the header before anything is decoded.
 fn check(header: &Header, length: u64) -> Result<(), Wrong> {
     let compression = header.compression;
     let Some(ratio) = max_ratio(compression) else {
         return Err(Wrong::new(
-            format!("its compression is not read: {compression}"),
-            "write the image with another: zip, piz or none",
+            format!("its compression is not supported: {compression}"),
+            "write the image with zip, piz or no compression",
         ));
     };
     let channels = &header.channels;
@@ -165,7 +165,7 @@ fn check(header: &Header, length: u64) -> Result<(), Wrong> {
     {
         return Err(Wrong::new(
             "has channels with fewer samples than texels",
-            "write the image with as many samples in each channel",
+            "write the image with one sample for each texel in each channel",
         ));
     }
 
@@ -182,7 +182,7 @@ fn check(header: &Header, length: u64) -> Result<(), Wrong> {
             "use a smaller image of the surroundings, with R, G and B only",
         ));
     };
-    // A table says where each block is, in eight bytes.
+    // A table has the position of each block, in eight bytes.
     let table = (header.chunk_count as u64).saturating_mul(8);
     if decoded > ratio.saturating_mul(length) || table > length {
         return Err(Wrong::new(
@@ -214,11 +214,11 @@ fn check(header: &Header, length: u64) -> Result<(), Wrong> {
     Ok(())
 }
 
-/// What a chunk holds.
+/// Decodes a chunk.
 fn decompress(chunk: Chunk, meta: &MetaData, part: usize) -> Result<UncompressedBlock, Wrong> {
     let header = &meta.headers[part];
     if chunk.layer_index != part {
-        return Err(Wrong::damaged("a block is another part's"));
+        return Err(Wrong::damaged("a block belongs to another part"));
     }
     if matches!(
         header.compression,
@@ -232,8 +232,8 @@ fn decompress(chunk: Chunk, meta: &MetaData, part: usize) -> Result<Uncompressed
     UncompressedBlock::decompress_chunk(chunk, meta, false).map_err(Wrong::damaged)
 }
 
-/// A DWA block starts with the lengths of its four streams, which the decoder makes room for
-/// without looking any further.
+/// Checks the lengths of the four streams with which a DWA block starts: the decoder allocates
+/// memory for them without checking.
 fn check_dwa(block: &CompressedBlock, bytes: u64) -> Result<(), Wrong> {
     let (CompressedBlock::ScanLine(exr::block::chunk::CompressedScanLineBlock {
         compressed_pixels_le: data,
@@ -251,8 +251,8 @@ fn check_dwa(block: &CompressedBlock, bytes: u64) -> Result<(), Wrong> {
         let bytes = data.get(at..at + 8)?;
         Some(u64::from_le_bytes(bytes.try_into().ok()?))
     };
-    // Of streams as they are: other channels, runs and what these become; and numbers of 16 bits.
-    // None is longer than the block, but for the overheads of small ones.
+    // Lengths of uncompressed streams: other channels, runs and what they expand to; and numbers of
+    // 16 bits. None is longer than the block, except for the overhead of small ones.
     let fits = |place, size: u64| {
         let length: Option<u64> = length(place);
         length.is_some_and(|length| length.saturating_mul(size) <= 2 * bytes + 4096)
@@ -261,7 +261,7 @@ fn check_dwa(block: &CompressedBlock, bytes: u64) -> Result<(), Wrong> {
     if plain || fits(1, 1) && fits(6, 1) && fits(7, 1) && fits(8, 2) && fits(9, 2) {
         return Ok(());
     }
-    Err(Wrong::damaged("a block claims more than it has room for"))
+    Err(Wrong::damaged("a block claims more than it can hold"))
 }
 
 /// The texels of the display window.
@@ -269,7 +269,7 @@ struct Canvas {
     texels: Vec<Vec3>,
     width: i64,
     height: i64,
-    /// Where the data window begins in the display window.
+    /// The offset of the data window in the display window.
     offset: [i64; 2],
     channels: ChannelList,
     rgb: [usize; 3],
@@ -308,7 +308,7 @@ impl Canvas {
                 continue;
             }
             let start = line.location.position.x() as i64 + self.offset[0];
-            // Of the line, what is inside of the window.
+            // The part of the line that is inside the window.
             let first = (-start).max(0);
             let count = line.location.sample_count as i64;
             let end = count.min(self.width - start);
@@ -332,7 +332,7 @@ impl Canvas {
                         texel[color] = f32::from_ne_bytes(*sample);
                     }
                 }
-                // Refused before.
+                // The header check rejects these.
                 SampleType::U32 => {}
             }
         }

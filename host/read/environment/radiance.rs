@@ -1,4 +1,4 @@
-//! Radiance's `.hdr` files: a header in text, and rows of shared exponents, run by run.
+//! Radiance's `.hdr` files: a header in text, then rows with shared exponents, run-length encoded.
 
 use std::io::BufRead;
 
@@ -8,12 +8,12 @@ use image::codecs::hdr::HdrDecoder;
 use super::{Wrong, guarded, room_for};
 use crate::scene::surroundings::EnvironmentImage;
 
-/// The fewest bytes of a row: a texel, of whatever width. Runs of the old kind grow without limit.
+/// The fewest bytes of a row: one texel, for any width. Runs of the old kind have no limit.
 const MIN_ROW: u64 = 4;
 
 pub(super) fn decode(file: impl BufRead, length: u64) -> Result<EnvironmentImage, Wrong> {
     guarded(|| {
-        // Many files start with #?RGBE, which only the lenient reader takes.
+        // Many files start with #?RGBE, which only the lenient reader accepts.
         let decoder = HdrDecoder::new_nonstrict(file).map_err(Wrong::damaged)?;
         let (width, height) = decoder.dimensions();
         let mut texels = room_for(width.into(), height.into())?;

@@ -1,4 +1,4 @@
-//! [`Atom`], and what may be wrong with a line that has one.
+//! [`Atom`], and errors in a line of a molecule file.
 
 use std::path::Path;
 
@@ -11,25 +11,25 @@ use crate::scene::limits::MAX_LENGTH;
 /// An atom of a molecule.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Atom {
-    /// Where it is, in ångström.
+    /// The position, in ångström.
     pub position: Vec3,
-    /// What it is.
+    /// The element.
     pub element: &'static Element,
 }
 
-/// Whether an atom may be so far from the origin, along an axis; its radius is less than what the
-/// largest floats below the limit are apart.
+/// Whether an atom may have this coordinate. Near the limit its radius is smaller than the spacing
+/// of floats.
 pub(super) fn is_coordinate(number: f32) -> bool {
     number.abs() < MAX_LENGTH
 }
 
-/// What is said of coordinates that are none.
-pub(super) const TOO_FAR: &str = "coordinates are in ångström, and below 1e18";
+/// The help for coordinates out of range.
+pub(super) const TOO_FAR: &str = "give coordinates in ångström, below 1e18";
 
-/// What is wrong with a line of a molecule file.
+/// An error in a line of a molecule file.
 #[derive(Debug)]
 pub struct WrongLine {
-    /// The line, counted from zero.
+    /// The number of the line, counted from zero.
     pub(super) line: usize,
     message: String,
     label: &'static str,

@@ -1,13 +1,13 @@
-//! The elements: van der Waals radii and the colours that molecular viewers give them.
+//! The elements: their van der Waals radii, and their colours in molecular viewers.
 //!
-//! Radii in ångström from A. Bondi, J. Phys. Chem. 68 (1964) 441, completed for the main group
-//! by M. Mantina et al., J. Phys. Chem. A 113 (2009) 5806, and for the other elements by
-//! S. Alvarez, Dalton Trans. 42 (2013) 8617. Elements that none of them lists have 2.00.
-//! Colours are Jmol's, in sRGB.
+//! Radii in ångström from A. Bondi, J. Phys. Chem. 68 (1964) 441, completed for the main group by
+//! M. Mantina et al., J. Phys. Chem. A 113 (2009) 5806, and for the other elements by S. Alvarez,
+//! Dalton Trans. 42 (2013) 8617. Elements that none of them lists have 2.00. Colours are Jmol's, in
+//! sRGB.
 
 use Source::{Alvarez, Bondi, Mantina, Unknown};
 
-/// Who gives the radius.
+/// The source of a radius.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Source {
     /// Bondi 1964.
@@ -16,30 +16,30 @@ pub enum Source {
     Mantina,
     /// Alvarez 2013.
     Alvarez,
-    /// Nobody; the radius is a stand-in.
+    /// None; the radius is a placeholder.
     Unknown,
 }
 
 /// An element as a viewer shows it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Element {
-    /// Its symbol.
+    /// The symbol.
     pub symbol: &'static str,
-    /// Its van der Waals radius in ångström.
+    /// The van der Waals radius in ångström.
     pub radius: f32,
-    /// Where the radius is from.
+    /// The source of the radius.
     pub source: Source,
-    /// Its colour, `0xRRGGBB` in sRGB.
+    /// The colour, `0xRRGGBB` in sRGB.
     pub color: u32,
 }
 
-/// Stands for an atom whose element cannot be told.
+/// Stands for an unknown element.
 pub const UNKNOWN: Element = element("?", 2.0, Unknown, 0xFF1493);
 
-/// The element with this symbol, whatever the case.
+/// The element with this symbol; case is ignored.
 #[must_use]
 pub fn by_symbol(symbol: &str) -> Option<&'static Element> {
-    // Deuterium and tritium, as neutron structures name them.
+    // Deuterium and tritium, as structures from neutron diffraction name them.
     let symbol = match symbol {
         "D" | "d" | "T" | "t" => "H",
         other => other,

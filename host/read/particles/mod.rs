@@ -1,5 +1,5 @@
-//! [`FORMATS`]: the kinds of files that particles are read from. What is known of them anywhere, their extensions, what is
-//! said where none fits, and the words of the command line, comes from this list. A reader knows no look.
+//! [`FORMATS`]: the formats of particle files. Extensions, error messages and help texts come from
+//! this list. Readers know nothing of a look.
 
 mod atom;
 pub mod elements;
@@ -15,10 +15,10 @@ use crate::scene::limits::MAX_SPHERES;
 
 pub use atom::{Atom, WrongLine};
 
-/// A kind of file.
+/// A file format.
 #[derive(Clone, Copy, Debug)]
 pub struct Format {
-    /// Its name.
+    /// The format's name.
     pub name: &'static str,
     /// The extensions of its files, in lower case.
     pub extensions: &'static [&'static str],
@@ -26,7 +26,7 @@ pub struct Format {
     pub parse: fn(&str) -> std::result::Result<Vec<Atom>, WrongLine>,
 }
 
-/// All of them.
+/// Every format.
 pub const FORMATS: [Format; 2] = [
     Format {
         name: "Protein Data Bank",
@@ -41,7 +41,8 @@ pub const FORMATS: [Format; 2] = [
 ];
 
 impl Format {
-    /// The format of a file by its name, where one fits: `c60.xyz`, `C60.XYZ` and `c60.xyz.gz` are XYZ.
+    /// The format that fits the file's name, if there is one: `c60.xyz`, `C60.XYZ` and `c60.xyz.gz`
+    /// are XYZ.
     #[must_use]
     pub fn of(path: &Path) -> Option<&'static Self> {
         let found = extension(uncompressed(path));
@@ -54,7 +55,8 @@ impl Format {
     ///
     /// # Errors
     ///
-    /// [`Error::Scene`] with the line that is wrong, or where there are more than a scene may have.
+    /// [`Error::Scene`] with the line that is wrong, or if there are more atoms than a scene may
+    /// have.
     pub fn load(&self, path: &Path) -> Result<Vec<Atom>> {
         let text = read_text(path)?;
         match (self.parse)(&text) {
@@ -72,7 +74,7 @@ impl Format {
     }
 }
 
-/// The extensions of all formats, as a sentence has them: `.pdb, .ent, .xyz or .extxyz`.
+/// The extensions of all formats, for messages: `.pdb, .ent, .xyz or .extxyz`.
 #[must_use]
 pub fn extensions() -> String {
     let all: Vec<String> = FORMATS

@@ -1,6 +1,6 @@
 //! Atoms from the Protein Data Bank's fixed-column format (versions 1 to 3.3).
 //!
-//! | columns | what |
+//! | columns | content |
 //! | --- | --- |
 //! | 1–6 | record name: `ATOM`, `HETATM`, `ENDMDL`, `END`, … |
 //! | 13–16 | atom name, its element right-justified in 13–14 |
@@ -10,10 +10,10 @@
 //! | 31–54 | x, y and z in ångström, eight columns each |
 //! | 77–78 | element, in files from 1996 on |
 //!
-//! Only what makes a picture is read: of several models the first, of alternate locations the
-//! one that its residue names first. Serial numbers, occupancies and unknown records are
-//! ignored, because real files put all sorts of things there. A file that starts as an entry of
-//! the Data Bank must end as one, with `END`.
+//! Only what an image needs is read: the first model, and of alternate locations the one that comes
+//! first in its residue. Serial numbers, occupancies and unknown records are ignored, because real
+//! files put all sorts of things there. A file that starts as an entry of the Data Bank must end as
+//! one, with `END`.
 
 use std::collections::HashMap;
 
@@ -57,21 +57,21 @@ pub fn parse(text: &str) -> Result<Vec<Atom>, WrongLine> {
             _ if is_misplaced_atom(line.0) => {
                 return Err(WrongLine::new(
                     number,
-                    "this atom's record name is not in its columns",
+                    "the record name of this atom is not in its columns",
                     "neither `ATOM  ` nor `HETATM`",
-                    "write ATOM or HETATM in capitals from the line's first column on, and after ATOM two blanks",
+                    "write ATOM or HETATM in capitals from column 1, with two blanks after ATOM",
                 ));
             }
             _ => {}
         }
     }
-    // Programs write files without an END; the Data Bank, whose files have a HEADER, does not.
+    // Programs write files without END. The Data Bank, whose files have a HEADER, does not.
     if !entry_id.is_empty() && !is_ended {
         return Err(WrongLine::new(
             last_line,
             "the entry stops before its END record",
             "end of the file",
-            "the file is truncated: get it again, or, if it is meant to end here, add a line END",
+            "the file is truncated: get it again, or add a line END if it is complete",
         ));
     }
     if atoms.is_empty() {
@@ -85,7 +85,7 @@ pub fn parse(text: &str) -> Result<Vec<Atom>, WrongLine> {
     Ok(atoms)
 }
 
-/// Whether a line that begins with no record name of an atom was meant to.
+/// Whether a line without a record name in its columns was meant to be an atom.
 fn is_misplaced_atom(line: &[u8]) -> bool {
     let line = line.trim_ascii_start();
     ["ATOM", "HETATM"].iter().any(|name| {
@@ -103,9 +103,9 @@ fn position(line: &Columns<'_>, number: usize) -> Result<Vec3, WrongLine> {
     if line.0.len() < 54 {
         return Err(WrongLine::new(
             number,
-            "an atom ends before its coordinates",
+            "the line of an atom ends before its coordinates",
             "ends before column 54",
-            "the file is truncated: get it again; coordinates stand in columns 31 to 54",
+            "the file is truncated: get it again; coordinates are in columns 31 to 54",
         ));
     }
     let coordinate = |from: usize| {
@@ -116,7 +116,7 @@ fn position(line: &Columns<'_>, number: usize) -> Result<Vec3, WrongLine> {
             .ok_or_else(|| {
                 WrongLine::new(
                     number,
-                    format!("columns {from} to {} hold no coordinate", from + 7),
+                    format!("columns {from} to {} do not hold a coordinate", from + 7),
                     "not a number",
                     "coordinates are decimal numbers in columns 31–38, 39–46 and 47–54; shift the line into its columns",
                 )
@@ -127,7 +127,7 @@ fn position(line: &Columns<'_>, number: usize) -> Result<Vec3, WrongLine> {
                 }
                 Err(WrongLine::new(
                     number,
-                    format!("columns {from} to {} hold no place: {value:e}", from + 7),
+                    format!("columns {from} to {} hold a coordinate out of range: {value:e}", from + 7),
                     "too far away, or not finite",
                     TOO_FAR,
                 ))
@@ -136,7 +136,7 @@ fn position(line: &Columns<'_>, number: usize) -> Result<Vec3, WrongLine> {
     Ok(Vec3::new(coordinate(31)?, coordinate(39)?, coordinate(47)?))
 }
 
-/// The atom's element: from its own columns where the file has them, else from the atom's name.
+/// The atom's element: from its own columns if the file has them, else from the atom's name.
 fn element(line: &Columns<'_>, entry_id: &str) -> Option<&'static Element> {
     // Before 1996 columns 73–80 held the entry's name and a line number.
     let is_old_layout = !entry_id.trim().is_empty() && line.text(73, 76) == entry_id;
@@ -144,9 +144,9 @@ fn element(line: &Columns<'_>, entry_id: &str) -> Option<&'static Element> {
         return Some(element);
     }
 
-    // Two letters that start an atom's name are an element only for these; everywhere else they
-    // are an element and a place in the residue (CD: delta carbon, HG: gamma hydrogen), or a
-    // place and an element (AC1 and NP of a nucleotide).
+    // Two letters at the start of an atom's name are an element only for these. Otherwise they are
+    // an element and a position in the residue (CD: delta carbon, HG: gamma hydrogen), or a
+    // position and an element (AC1 and NP of a nucleotide).
     const TWO_LETTERS: &[&str] = &[
         "AL", "AS", "AG", "AU", "BA", "BE", "BR", "CA", "CD", "CL", "CO", "CR", "CS", "CU", "FE",
         "GA", "HG", "IN", "KR", "LI", "MG", "MN", "MO", "NA", "NI", "PB", "PD", "PT", "RB", "RE",
@@ -178,8 +178,8 @@ fn element(line: &Columns<'_>, entry_id: &str) -> Option<&'static Element> {
     }
 }
 
-/// A line addressed as the format's description does: columns from one, both ends inclusive,
-/// blank beyond its end.
+/// A line addressed as in the format's description: columns count from one, both ends are
+/// inclusive, and columns beyond the end are blank.
 struct Columns<'a>(&'a [u8]);
 
 impl<'a> Columns<'a> {
@@ -224,8 +224,8 @@ mod tests {
         assert_eq!(atoms[0].position, Vec3::new(17.047, 14.099, 3.625));
     }
 
-    /// In this entry the occupancy column holds electron counts, an independent statement of
-    /// each atom's element.
+    /// In this entry the occupancy column holds electron counts, which independently state each
+    /// atom's element.
     #[test]
     fn haemoglobin_agrees_with_its_own_electron_counts() {
         let atoms = parse(HAEMOGLOBIN).expect("haemoglobin");
@@ -257,7 +257,7 @@ mod tests {
             })
             .inspect(|(line, _)| assert!(["ASN", "HIS", "THR"].contains(&&line[17..20]), "{line}"))
             .count();
-        // The entry's authors left the ends of ten side chains swapped in that column.
+        // In that column the ends of ten side chains are swapped in the entry.
         assert_eq!(swapped, 20);
     }
 
@@ -350,7 +350,7 @@ mod tests {
             (format!("{good}\n{}", good.replace("1.000", "-1e18")), 1),
             (format!("{good}\n{}", good.replace("1.000", "é.000")), 1),
             ("HEADER\nEND\n".into(), 1),
-            // Not left out without a word.
+            // Such lines must not be skipped silently.
             (format!("{good}\n{}", good.replace("ATOM  ", "atom  ")), 1),
             (format!("{good}\n{}", good.replace("ATOM  ", " ATOM ")), 1),
             (format!("{good}\n{}", good.replace("ATOM   ", "ATOM 10")), 1),

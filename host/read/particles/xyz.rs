@@ -1,8 +1,8 @@
 //! Atoms from the XYZ format: a count, a comment, then one atom a line.
 //!
-//! An atom is an element (symbol or atomic number) and three coordinates in ångström. Which columns
-//! these are extended XYZ says in its comment: `Properties=species:S:1:pos:R:3` is what is taken where nothing is said. Other columns
-//! are passed over. Of several frames the first is read.
+//! An atom is an element (symbol or atomic number) and three coordinates in ångström. In extended
+//! XYZ the comment says in which columns they are; the default is `Properties=species:S:1:pos:R:3`.
+//! Other columns are ignored. Only the first frame is read.
 
 use std::mem::MaybeUninit;
 
@@ -61,7 +61,7 @@ pub fn parse(text: &str) -> Result<Vec<Atom>, WrongLine> {
                 return Err(WrongLine::new(
                     line,
                     "an atom needs an element and three coordinates",
-                    "a coordinate is missing, no number, or 1e18 and more",
+                    "a coordinate is missing, not a number, or out of range (1e18)",
                     if columns == Columns::PLAIN {
                         "write lines like: C 0.0 1.2 -3.4"
                     } else {
@@ -83,11 +83,11 @@ pub fn parse(text: &str) -> Result<Vec<Atom>, WrongLine> {
         return Err(WrongLine::new(
             FIRST_ATOM + count + line,
             format!(
-                "the file promises {}, and after them there is neither its end nor another frame",
+                "the file promises {}, but neither its end nor another frame follows them",
                 count_of(count, "atom")
             ),
             "one more line",
-            "write the number of all atoms on the first line, or take away what follows them",
+            "write the number of all atoms on the first line, or remove what follows them",
         ));
     }
     if dummies > 0 {
@@ -96,7 +96,7 @@ pub fn parse(text: &str) -> Result<Vec<Atom>, WrongLine> {
     if atoms.is_empty() {
         return Err(WrongLine::new(
             0,
-            "the file has dummy atoms only",
+            "the file has only dummy atoms",
             "nothing to draw",
             "give at least one atom",
         ));
@@ -109,18 +109,19 @@ const FIRST_ATOM: usize = 2;
 /// Bytes that a thread reads at once.
 const BLOCK: usize = 1 << 18;
 
-/// Blocks that are cut before it is asked whether they are enough: another frame may follow.
+/// Blocks that are cut before the lines are counted: another frame may follow.
 const AT_ONCE: usize = 256;
 
 /// Whole lines of a file.
 struct Block<'a> {
-    /// How many of the frame's atoms come before.
+    /// The number of the frame's atoms before this block.
     before: usize,
     lines: usize,
     text: &'a str,
 }
 
-/// The first `count` lines, or all that there are, in blocks; how many they are; and what follows them.
+/// The first `count` lines, or all if there are fewer, in blocks; their number; and the text after
+/// them.
 fn blocks(text: &str, count: usize) -> (Vec<Block<'_>>, usize, &str) {
     let mut blocks = Vec::new();
     let mut end = 0;
@@ -155,17 +156,17 @@ fn blocks(text: &str, count: usize) -> (Vec<Block<'_>>, usize, &str) {
     (blocks, before, &text[end..])
 }
 
-/// How many lines a text has, the last of which need not end.
+/// The number of lines of a text. The last may lack its end of line.
 fn lines_of(text: &str) -> usize {
     let ends = text.bytes().filter(|byte| *byte == b'\n').count();
     ends + usize::from(!text.ends_with('\n'))
 }
 
-/// What else was found in a block than atoms.
+/// The result of reading a block, besides the atoms.
 struct Read {
     atoms: usize,
     dummies: usize,
-    /// The first line that is wrong, after which nothing was read.
+    /// The first line that is wrong. Nothing after it was read.
     wrong: Option<(usize, Wrong)>,
 }
 
@@ -174,7 +175,7 @@ enum Wrong {
     Coordinate,
 }
 
-/// Adds the atoms of all blocks, each to its place; what else was found, block by block.
+/// Appends the atoms of all blocks in order. Returns the results block by block.
 fn read_blocks(blocks: &[Block<'_>], columns: Columns, atoms: &mut Vec<Atom>) -> Vec<Read> {
     let mut rooms = Vec::with_capacity(blocks.len());
     let mut rest = atoms.spare_capacity_mut();
@@ -188,7 +189,7 @@ fn read_blocks(blocks: &[Block<'_>], columns: Columns, atoms: &mut Vec<Atom>) ->
         .zip(rooms)
         .map(|(block, room)| read_block(block, columns, room))
         .collect();
-    // Where there are dummies, those that follow move up.
+    // If there are dummies, the following atoms move up.
     let (mut from, mut to) = (0, 0);
     let room = atoms.spare_capacity_mut();
     for (block, read) in blocks.iter().zip(&read) {
@@ -198,12 +199,13 @@ fn read_blocks(blocks: &[Block<'_>], columns: Columns, atoms: &mut Vec<Atom>) ->
         from += block.lines;
         to += read.atoms;
     }
-    // SAFETY: each block's atoms were written from where its lines begin, and moved up to the last of the block before.
+    // SAFETY: each block's atoms were written from the position of its first line, and moved up to
+    // the end of the block before.
     unsafe { atoms.set_len(to) };
     read
 }
 
-/// Reads the atoms of a block into its room, which has one for each line.
+/// Reads the atoms of a block into `room`, which has an element for each line.
 fn read_block(block: &Block<'_>, columns: Columns, room: &mut [MaybeUninit<Atom>]) -> Read {
     let first = FIRST_ATOM + block.before;
     let mut read = Read {
@@ -211,7 +213,7 @@ fn read_block(block: &Block<'_>, columns: Columns, room: &mut [MaybeUninit<Atom>
         dummies: 0,
         wrong: None,
     };
-    // Neighbours are often of one element.
+    // Neighbours often have the same element.
     let mut last = ("", None);
     for (number, line) in block.text.lines().enumerate() {
         let (symbol, position) = match columns.fields(line) {
@@ -238,7 +240,7 @@ fn read_block(block: &Block<'_>, columns: Columns, room: &mut [MaybeUninit<Atom>
     read
 }
 
-/// Where on its line an atom's element is, and the first of its coordinates.
+/// The columns of the element and of the first coordinate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Columns {
     element: usize,
@@ -246,15 +248,15 @@ struct Columns {
 }
 
 impl Columns {
-    /// Where nothing is said of them.
+    /// The default columns.
     const PLAIN: Self = Self {
         element: 0,
         position: 1,
     };
 
-    /// As the comment of extended XYZ says: names, types and widths in the order of the columns.
+    /// The columns that the comment of extended XYZ names: names, types and widths in order.
     fn of(comment: &str) -> Result<Self, WrongLine> {
-        // A word of its own; and without a colon it is a comment of somebody's.
+        // The key must be a word of its own. A value without a colon is an ordinary comment.
         let is_there = |at: &usize| {
             comment[..*at]
                 .chars()
@@ -271,7 +273,7 @@ impl Columns {
                 1,
                 message,
                 label,
-                "say which columns there are, for example by Properties=species:S:1:pos:R:3",
+                "name the columns, for example Properties=species:S:1:pos:R:3",
             )
         };
         let end = |c: char| c.is_whitespace() || c == '"';
@@ -289,7 +291,7 @@ impl Columns {
             };
             let Some(width) = width.filter(|width| *width > 0).map(usize::from) else {
                 return Err(wrong(
-                    format!("{} is no property", shown(&property.join(":"))),
+                    format!("{} is not a property", shown(&property.join(":"))),
                     "not a name, a type of S, R, I or L, and a width",
                 ));
             };
@@ -305,17 +307,17 @@ impl Columns {
         match (element, position) {
             (Some(element), Some(position)) => Ok(Self { element, position }),
             (None, _) => Err(wrong(
-                "no column has the elements of the atoms".into(),
+                "no column holds the elements of the atoms".into(),
                 "neither species:S:1 nor Z:I:1",
             )),
             (_, None) => Err(wrong(
-                "no columns have the positions of the atoms".into(),
+                "no columns hold the positions of the atoms".into(),
                 "no pos:R:3",
             )),
         }
     }
 
-    /// The element and the position of an atom's line.
+    /// The element and the position in an atom's line.
     fn fields<'a>(&self, line: &'a str) -> std::result::Result<(&'a str, Vec3), Wrong> {
         let mut fields = line.split_whitespace();
         if *self == Self::PLAIN {
@@ -337,7 +339,7 @@ impl Columns {
     }
 }
 
-/// The next three fields.
+/// Parses the next three fields.
 fn position_of<'a>(fields: &mut impl Iterator<Item = &'a str>) -> std::result::Result<Vec3, Wrong> {
     let mut coordinate = || fields.next().and_then(number_of).ok_or(Wrong::Coordinate);
     Ok(Vec3::new(coordinate()?, coordinate()?, coordinate()?))
@@ -347,7 +349,7 @@ fn missing(line: usize, expected: usize, found: usize) -> WrongLine {
     WrongLine::new(
         line,
         format!(
-            "the file promises {} and holds {found}",
+            "the file promises {}, but holds {found}",
             count_of(expected, "atom")
         ),
         "the atoms end here",
@@ -355,7 +357,7 @@ fn missing(line: usize, expected: usize, found: usize) -> WrongLine {
     )
 }
 
-/// A number that is not too large for a scene; Fortran's `1.0D+00` counts as one.
+/// A number that is not too large for a scene. Fortran's `1.0D+00` is accepted.
 fn number_of(text: &str) -> Option<f32> {
     let plain = |text: &str| text.parse().ok();
     plain(text)
@@ -363,7 +365,7 @@ fn number_of(text: &str) -> Option<f32> {
         .filter(|value| is_coordinate(*value))
 }
 
-/// From `C`, `cl`, `17`, and labels such as `C12` and `Fe2+`.
+/// Parses `C`, `cl`, `17`, and labels such as `C12` and `Fe2+`.
 fn element(text: &str) -> Option<&'static Element> {
     if let Ok(number) = text.parse::<usize>() {
         return elements::by_number(number);
@@ -460,7 +462,7 @@ mod tests {
                 (read, _) => panic!("{text:?}: {read:?}"),
             }
         }
-        // Where the frame ends far from where a block does, too.
+        // Also if the frame ends far from the end of a block.
         for count in [3, 30_000, 65_000] {
             let mut text = format!("{count}\n\n");
             for atom in 0..count {

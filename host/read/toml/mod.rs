@@ -1,4 +1,4 @@
-//! Scenes in TOML, read with spans so that a mistake points at its line and column.
+//! Reads scenes in TOML, with spans so that errors point at their line and column.
 
 mod camera;
 mod fog;
@@ -35,7 +35,7 @@ use sky::SkyTable;
 use sphere::{Known, Row, SphereTable};
 use split::{Batch, Piece, Split};
 
-/// The file as written, but for its `[[sphere]]` tables; every value keeps its span.
+/// The file without its `[[sphere]]` tables; every value keeps its span.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct File {
@@ -54,16 +54,16 @@ struct File {
     fog: Option<Spanned<FogTable>>,
 }
 
-/// Reads the scene at `path`; files that it names count from its directory.
+/// Reads the scene at `path`. Relative names in it start from its directory.
 pub(super) fn load(path: &Path) -> Result<Scene> {
     parse(path, read_text(path)?)
 }
 
-/// Makes a scene of `text`, the content of the file at `path`.
+/// Parses `text`, the content of the file at `path`, into a scene.
 ///
 /// # Errors
 ///
-/// [`Error::Scene`](crate::Error::Scene) with the place of the mistake.
+/// [`Error::Scene`](crate::Error::Scene) with the place of the error.
 pub fn parse(path: &Path, text: String) -> Result<Scene> {
     let split = Split::of(&text);
     let reader = Reader {
@@ -80,7 +80,7 @@ pub fn parse(path: &Path, text: String) -> Result<Scene> {
         }
         .wrong_at(
             0..0,
-            format!("the file is longer than {MAX_TEXT} bytes beside its [[sphere]] tables"),
+            format!("the file has more than {MAX_TEXT} bytes besides its [[sphere]] tables"),
             "ends here",
             "write spheres as [[sphere]] tables, or put them into a file of [particles]",
         )
@@ -104,8 +104,8 @@ pub fn parse(path: &Path, text: String) -> Result<Scene> {
         }
         .wrong_at(
             0.."[[sphere]]".len(),
-            "there is a list of spheres already",
-            "a table of another",
+            "there is already a list of spheres",
+            "a table of another sphere",
             "write all spheres as [[sphere]] tables, or all in one list",
         )
         .into());
@@ -113,11 +113,11 @@ pub fn parse(path: &Path, text: String) -> Result<Scene> {
     reader.scene(file, &split.spheres)
 }
 
-/// The most bytes of a file beside its `[[sphere]]` tables, and of one of those: parsing takes some
-/// fifty times as many.
+/// The most bytes of a file besides its `[[sphere]]` tables, and of one such table: parsing takes
+/// about fifty times as much memory.
 const MAX_TEXT: usize = 1 << 24;
-/// Batches of `[[sphere]]` tables that are parsed, each by a thread, before what they say is kept:
-/// what a parser takes for a table is forty times as long as the table.
+/// Batches of `[[sphere]]` tables that are parsed, each by a thread, before their spheres are kept:
+/// a parsed table is forty times as large as its text.
 const AT_ONCE: usize = 64;
 
 impl Reader<'_> {

@@ -25,18 +25,15 @@ impl Reader<'_> {
             return Err(self
                 .wrong(
                     file,
-                    format!(
-                        "{}: not a kind of particle file that spherule reads",
-                        shown(name)
-                    ),
-                    "unknown kind",
+                    format!("{}: not a particle format that spherule reads", shown(name)),
+                    "unknown format",
                     format!("give a {} file", particles::extensions()),
                 )
                 .into());
         };
         let atoms = format.load(&path).map_err(|error| match error {
-            // A file that is not there is a mistake in the scene; one that is there but wrong
-            // says more about itself than its name here does.
+            // A missing file is an error in the scene. For an invalid one, the place in the file
+            // says more than its name here.
             Error::Scene(inner) if inner.place.is_none() => self
                 .wrong(file, inner.to_string(), "named here", inner.help)
                 .into(),

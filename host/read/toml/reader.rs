@@ -1,4 +1,4 @@
-//! Checks values, and points at them where they are wrong.
+//! Checks values, and reports errors with their place.
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -14,23 +14,23 @@ use crate::plural::count_of;
 use crate::scene::limits;
 use crate::shown::{shown, shown_up_to};
 
-/// Checks values, knowing the text that they came from.
+/// Checks values of a text.
 #[derive(Clone, Copy)]
 pub(super) struct Reader<'a> {
     pub(super) path: &'a Path,
     pub(super) text: &'a str,
-    /// What was parsed, of the text.
+    /// The parts of the text that were parsed.
     pub(super) pieces: &'a [Piece],
 }
 
 impl Reader<'_> {
-    /// Parses a text made of the pieces.
+    /// Parses a text that was joined from the pieces.
     pub(super) fn read<T: DeserializeOwned>(&self, text: &str) -> Result<T> {
         toml::from_str(text).map_err(|error| {
             let message = plain(error.message().trim());
             let help = help_for_toml(&message);
             let message = shown_up_to(&message, 400).into_owned();
-            // The parser does not say where everything is.
+            // The parser does not give every error a place.
             let Some(span) = error.span() else {
                 return SceneError::without_place(self.path, message, help).into();
             };
@@ -38,12 +38,12 @@ impl Reader<'_> {
         })
     }
 
-    /// The file that the scene names: its name counts from the scene's directory.
+    /// The path of a file that the scene names; relative names start from the scene's directory.
     pub(super) fn beside(&self, name: &str) -> PathBuf {
         self.path.parent().unwrap_or(Path::new("")).join(name)
     }
 
-    /// What a value of this name may not be.
+    /// The error for a value that is not what is `wanted`.
     pub(super) fn not_a(&self, name: &str, value: &Spanned<Value>, wanted: &str) -> Error {
         let (said, value_kind) = (value.get_ref().said(), value.get_ref());
         let help = match value_kind {
@@ -71,7 +71,7 @@ impl Reader<'_> {
         }
     }
 
-    /// What one of these texts stands for.
+    /// The meaning of one of these texts.
     pub(super) fn one_of<T: Copy>(
         &self,
         name: &str,
@@ -90,7 +90,7 @@ impl Reader<'_> {
             .wrong(
                 value,
                 format!("there is no {name} \"{}\"", shown(text)),
-                "not known",
+                "unknown",
                 format!("give one of {}", known.join(", ")),
             )
             .into())
@@ -117,7 +117,7 @@ impl Reader<'_> {
                 .ok()
                 .filter(|whole| (low..=high).contains(whole))
                 .ok_or_else(out_of_range),
-            // Integers that have no room in 64 bits.
+            // Integers that do not fit into 64 bits.
             Value::Number(number) if number.abs() >= 1e18 => Err(out_of_range()),
             _ => Err(self.not_a(name, value, "a whole number")),
         }
@@ -149,7 +149,7 @@ impl Reader<'_> {
         self.whole(name, value, 1, limits::MAX_IMAGE_SIDE)
     }
 
-    /// A vector in space.
+    /// Three numbers within the range of coordinates.
     pub(super) fn vector(&self, name: &str, value: &Spanned<Value>) -> Result<Vec3> {
         let vector = self.three(name, value)?;
         if !limits::COORDINATE.holds_all(vector) {
@@ -209,7 +209,7 @@ impl Reader<'_> {
         Ok(vector)
     }
 
-    /// Red, green and blue, each in the range.
+    /// Linear red, green and blue, each within the range.
     pub(super) fn color(
         &self,
         name: &str,
@@ -225,7 +225,7 @@ impl Reader<'_> {
         } else if range == limits::REFLECTANCE {
             (
                 format!("{name} has a channel above one"),
-                "gives back more light than it receives",
+                "reflects more light than it receives",
             )
         } else {
             (
@@ -275,7 +275,7 @@ impl Reader<'_> {
         self.wrong_at(value.span(), message, label, help)
     }
 
-    /// What is wrong with these bytes of what was parsed.
+    /// The error at these bytes of the parsed text.
     pub(super) fn wrong_at(
         &self,
         span: Range<usize>,
@@ -296,7 +296,7 @@ impl Reader<'_> {
         })
     }
 
-    /// Where in the file a byte is that was parsed.
+    /// The position in the file of a byte of the parsed text.
     fn in_file(&self, at: usize) -> usize {
         let piece = self.pieces.iter().rev().find(|piece| piece.start <= at);
         piece.map_or(at, |piece| piece.range.start + (at - piece.start))
@@ -309,11 +309,11 @@ fn help_for_toml(message: &str) -> String {
     } else if message.contains("missing field") {
         "add it; docs/scenes.md lists every key".into()
     } else {
-        "the README shows a whole scene; tables are [name], spheres are [[sphere]], texts stand in quotes".into()
+        "the README shows a whole scene; tables are [name], spheres are [[sphere]], texts are in quotes".into()
     }
 }
 
-/// serde's words, and the parser's, in plain ones.
+/// The messages of serde and of the parser in plain words.
 fn plain(message: &str) -> String {
     let mut message = message.to_owned();
     if message.contains(DATE) {

@@ -104,7 +104,7 @@ impl Reader<'_> {
                 })
             })
             .transpose()?;
-        // One of the two is a sky of one colour; none of them is dark.
+        // A single colour is that of the whole sky; without any the sky is black.
         let one = horizon.or(zenith).unwrap_or(Vec3::ZERO);
         Ok(Surroundings {
             horizon: horizon.unwrap_or(one),
@@ -115,5 +115,5 @@ impl Reader<'_> {
     }
 }
 
-/// The angle across the sun as it is seen from the Earth, in degrees.
+/// The angular diameter of the sun seen from the Earth, in degrees.
 const DEFAULT_SUN_SIZE: f32 = 0.53;

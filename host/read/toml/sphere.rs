@@ -1,4 +1,4 @@
-//! The tables `[[sphere]]`, of which there may be millions: threads parse them batch by batch.
+//! The tables `[[sphere]]`. There may be millions, so threads parse them in batches.
 
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -24,7 +24,7 @@ pub(super) struct SphereTable {
     pub(super) velocity: Option<Spanned<Value>>,
 }
 
-/// Some `[[sphere]]` tables.
+/// A batch of `[[sphere]]` tables.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Spheres {
@@ -32,7 +32,7 @@ pub(super) struct Spheres {
 }
 
 impl Reader<'_> {
-    /// Some `[[sphere]]` tables.
+    /// Reads a batch of `[[sphere]]` tables.
     pub(super) fn batch(&self, batch: &Batch, known: &Known<'_>) -> Result<Vec<Row>> {
         let last = &self.text[batch.last..batch.range.end];
         if last.len() > MAX_TABLE {
@@ -58,8 +58,8 @@ impl Reader<'_> {
         rows.collect()
     }
 
-    /// What is wrong with a table that is too long. A bracket or a text that is not closed takes in
-    /// what follows; its beginning may say so.
+    /// The error for a table that is too long. An open bracket or text swallows what follows it;
+    /// then the error at its beginning is returned.
     pub(super) fn long_table(&self, start: usize, table: &str) -> Error {
         let mut end = MAX_TABLE;
         while !table.is_char_boundary(end) {
@@ -142,7 +142,7 @@ impl Reader<'_> {
         })
     }
 
-    /// Refuses a sphere that reaches, or moves, too far.
+    /// Fails for a sphere that reaches, or moves, too far.
     pub(super) fn is_within(
         &self,
         center: &Spanned<Value>,
@@ -171,7 +171,7 @@ impl Reader<'_> {
 
 const MAX_TABLE: usize = 1 << 16;
 
-/// A material's index, and for hollow spheres how thick they are and the index of what is inside.
+/// A material's index; for hollow spheres also the thickness and the index of the inner material.
 type NamedMaterial = (u32, Option<(f32, u32)>);
 
 /// What the spheres of a scene refer to.
@@ -180,18 +180,18 @@ pub(super) struct Known<'a> {
     pub(super) shutter: (f32, f32),
 }
 
-/// A sphere as its table says.
+/// A sphere as its table describes it.
 pub(super) struct Row {
     pub(super) sphere: Sphere,
-    /// Its material; `None` for a grey.
+    /// The index of its material; `None` for grey.
     pub(super) material: Option<u32>,
     pub(super) velocity: Vec3,
-    /// The hollow in it.
+    /// The inner sphere of a hollow one, and its material.
     pub(super) hollow: Option<(Sphere, u32)>,
 }
 
 impl Row {
-    /// `grey` is the material of spheres without one, once there is one.
+    /// Adds the sphere to `world`. `grey` is the material of spheres without one, once it exists.
     pub(super) fn add_to(self, world: &mut World, grey: &mut Option<u32>) {
         let id = self.material.unwrap_or_else(|| {
             let diffuse = Material::diffuse(Vec3::splat(0.5));

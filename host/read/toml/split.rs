@@ -1,15 +1,15 @@
-//! A scene's text, split at its headers, so that millions of `[[sphere]]` tables are parsed some at a
-//! time.
+//! Splits a scene's text at its headers, so that millions of `[[sphere]]` tables can be parsed in
+//! batches.
 
 use std::ops::Range;
 
 use toml_parser::Source;
 use toml_parser::lexer::TokenKind;
 
-/// Bytes of `[[sphere]]` tables that are parsed at once by one thread.
+/// Bytes of `[[sphere]]` tables that a thread parses at once.
 const BATCH: usize = 1 << 15;
 
-/// A part of a file, and where it begins in the text that was made of some of them.
+/// A part of a file, and where it starts in the text that was joined from such parts.
 #[derive(Clone, Debug)]
 pub(super) struct Piece {
     pub(super) range: Range<usize>,
@@ -22,19 +22,19 @@ impl Piece {
     }
 }
 
-/// A file, split at its headers: scenes may have millions of `[[sphere]]` tables, and one at a time
-/// is enough to know.
+/// A file, split at its headers. Scenes may have millions of `[[sphere]]` tables, which can be
+/// parsed independently.
 pub(super) struct Split {
-    /// The `[[sphere]]` tables.
+    /// Batches of `[[sphere]]` tables.
     pub(super) spheres: Vec<Batch>,
-    /// What lies between.
+    /// Everything else.
     pub(super) others: Vec<Piece>,
 }
 
-/// One `[[sphere]]` table after the other, [`BATCH`] bytes or somewhat more.
+/// Consecutive `[[sphere]]` tables of [`BATCH`] bytes or slightly more.
 pub(super) struct Batch {
     pub(super) range: Range<usize>,
-    /// Where the last of them begins.
+    /// The start of the last table.
     pub(super) last: usize,
 }
 
@@ -45,7 +45,8 @@ impl Split {
             others: vec![Piece::whole(0..0)],
         };
         let mut is_sphere = false;
-        // Brackets that are open, and whether a line of its own begins.
+        // The number of open brackets, whether a line starts outside of them, and whether this line
+        // is a header.
         let (mut depth, mut is_start, mut is_header) = (0_usize, true, false);
         for token in Source::new(text).lex() {
             let start = token.span().start();
@@ -71,7 +72,7 @@ impl Split {
         split
     }
 
-    /// A header is at `start`; what was before it ends there.
+    /// Starts a part at the header at `start`, which ends the part before.
     fn begin(&mut self, was_sphere: bool, is_sphere: bool, start: usize) {
         if was_sphere
             && is_sphere
@@ -116,7 +117,7 @@ impl Split {
     }
 }
 
-/// Whether a text begins with `[[sphere]]`, however it is written.
+/// Whether a text starts with the header `[[sphere]]`, in any spelling.
 fn is_sphere_header(text: &str) -> bool {
     let blank = [' ', '\t'];
     let name = text

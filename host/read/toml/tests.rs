@@ -1,4 +1,4 @@
-//! Scenes that are read, and mistakes that are refused where they are.
+//! Tests of reading scenes, and of errors with their places.
 
 use glam::Vec3;
 use spherule_kernel::Sphere;
@@ -49,7 +49,7 @@ fn a_whole_scene_is_read() {
     assert_eq!(scene.view.expect("a view").vertical_fov, 90.0);
 }
 
-/// Each mistake, the line it must be found on, and a word of the message.
+/// Each error, the line on which it must be found, and a word of the message.
 #[test]
 fn each_mistake_is_refused_at_its_line() {
     let cases = [
@@ -190,7 +190,7 @@ fn each_mistake_is_refused_at_its_line() {
             "radius = 100",
             "radius = 100\n[particles]\nfile = \"no.gro\"",
             25,
-            "not a kind",
+            "not a particle format",
         ),
         (
             "radius = 100",
@@ -212,7 +212,7 @@ fn each_mistake_is_refused_at_its_line() {
     }
 }
 
-/// The parser does not say where a key of many parts is; no other place is shown for it.
+/// The parser does not say where a key of many parts is, so no place is shown for it.
 #[test]
 fn a_mistake_without_a_place_has_none() {
     let key = ["a"; 100].join(".");
@@ -226,8 +226,7 @@ fn a_mistake_without_a_place_has_none() {
     }
 }
 
-/// Each new mistake in a scene of its own: what the scene has besides a sphere, and a word of
-/// the message.
+/// Each error in a scene of its own: the scene's text besides a sphere, and a word of the message.
 #[test]
 fn each_key_of_the_effects_refuses_what_it_cannot_be() {
     let cases = [
@@ -373,7 +372,7 @@ fn each_key_of_the_effects_refuses_what_it_cannot_be() {
     }
 }
 
-/// The reader, the schema and the page of keys know the same keys.
+/// The reader, the schema and the documentation of keys have the same keys.
 #[test]
 fn the_schema_and_the_docs_list_every_key() {
     let schema: serde_json::Value =
@@ -419,7 +418,7 @@ fn the_schema_and_the_docs_list_every_key() {
         let Err(Error::Scene(error)) = read(wrong) else {
             panic!("{wrong} is read")
         };
-        // serde names the fields that it expected.
+        // serde lists the fields that it expected.
         let expected = error.message.split_once("expected").expect("names").1;
         let mut reader: Vec<&str> = expected.split('`').skip(1).step_by(2).collect();
         let mut known: Vec<&str> = properties
@@ -449,7 +448,7 @@ fn a_scene_without_spheres_is_refused() {
     assert!(error.to_string().contains("no spheres"));
 }
 
-/// Where `[[sphere]]` tables stand among others, and how they are written.
+/// `[[sphere]]` tables between others, in every spelling.
 #[test]
 fn a_file_is_split_at_its_headers() {
     let scene =
@@ -473,8 +472,7 @@ fn a_file_is_split_at_its_headers() {
     assert_eq!(read(list).expect("a scene").world.spheres.len(), 1);
 }
 
-/// A mistake among very many spheres is found, and a bracket that is left open does not take in
-/// all of them.
+/// An error among very many spheres is found, and an open bracket does not swallow all of them.
 #[test]
 fn among_many_spheres_a_mistake_is_found() {
     let sphere = |index: usize| format!("[[sphere]]\ncenter = [{index}, 0, 0]\nradius = 1\n");
@@ -505,7 +503,7 @@ fn among_many_spheres_a_mistake_is_found() {
         assert!(error.message.contains(word), "{wrong}: {}", error.message);
         let (found, _) = error.place.as_ref().expect("a place").line_column();
         let expected = 3 * 7000 + line;
-        // A bracket that is open is missed in the next line.
+        // An open bracket is noticed in the next line.
         assert!(
             (expected..=expected + 1).contains(&found),
             "{wrong}: {found}"
@@ -517,7 +515,7 @@ fn among_many_spheres_a_mistake_is_found() {
     );
     let error = read(&both).expect_err("two kinds").to_string();
     assert!(
-        error.starts_with("test.toml:2:1: there is a list of spheres"),
+        error.starts_with("test.toml:2:1: there is already a list of spheres"),
         "{error}"
     );
     let long = format!("{}x = \"{}\"\n", many[0], "y".repeat(MAX_TEXT));
@@ -539,7 +537,7 @@ fn among_many_spheres_a_mistake_is_found() {
     );
 }
 
-/// Names come out of files as they are, and go to a terminal as it can show them.
+/// Names from files are escaped before they go to a terminal.
 #[test]
 fn messages_hold_no_escapes_and_no_megabytes() {
     let long = "n".repeat(5_000_000);

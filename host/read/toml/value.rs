@@ -1,4 +1,4 @@
-//! [`Value`]: what stands behind a key, whatever it is.
+//! [`Value`]: the value of a key, of any type.
 
 use std::fmt;
 
@@ -7,25 +7,25 @@ use serde::de::{Deserializer, IgnoredAny, MapAccess, SeqAccess, Visitor};
 
 use crate::shown::shown;
 
-/// A value as it is written. What a key takes is checked where the key is known.
+/// A value as it is written. It is checked where its key is known.
 #[derive(Debug)]
 pub(super) enum Value {
     Whole(i64),
     Number(f64),
     Truth(bool),
     Text(String),
-    /// Its numbers, and what it holds besides, if anything.
+    /// Its numbers, and a description of the first other element, if any.
     List(Vec<f64>, Option<String>),
     Table,
-    /// A date, a time, or both, which no key takes.
+    /// A date, a time, or both; no key accepts them.
     Date,
 }
 
-/// The name of the one key of a table that a date is for serde.
+/// The only key of the table as which serde represents a date.
 pub(super) const DATE: &str = "$__toml_private_datetime";
 
 impl Value {
-    /// What it is, as the end of "width is …".
+    /// A description of the value, as the end of "width is …".
     pub(super) fn said(&self) -> String {
         match self {
             Self::Whole(whole) => whole.to_string(),
@@ -47,7 +47,7 @@ impl Value {
     }
 }
 
-/// A number as a person would write it.
+/// A number as people write it.
 pub(super) fn said(number: f64) -> String {
     if number == 0.0 || !number.is_finite() || (1e-5..1e15).contains(&number.abs()) {
         number.to_string()
