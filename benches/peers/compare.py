@@ -1,13 +1,13 @@
-"""Compares a peer's answers with spherule's, and says what a difference may be due to."""
+"""Compares a peer's answers with spherule's, and explains the differences."""
 
 import numpy as np
 
 from scene import KINDS, NEAREST, NONE
 
-TANGENT = 1e-4  # of the radius: a closest approach this near to it is nearly tangent
-ROUNDING = 1e-5  # of the distance: t nearer than this is the same t
-SAME_POINT = 1e-2  # of the radius: farther apart, two hits of one sphere are two roots
-LOOKED_AT = 200  # rays that are searched through all spheres; further ones count as "other"
+TANGENT = 1e-4  # of the radius: a ray whose closest approach is this near to the radius is nearly tangent
+ROUNDING = 1e-5  # of the distance: values of t this close count as equal
+SAME_POINT = 1e-2  # of the radius: two hits of a sphere that are farther apart are two roots
+LOOKED_AT = 200  # rays that are tested with all spheres; further ones count as "other"
 
 
 def approach(rays, spheres):
@@ -23,7 +23,7 @@ def approach(rays, spheres):
 
 
 def unit(rays):
-    """What counts as rounding in t, for each ray: a share of the coordinates' size."""
+    """The error of t that counts as rounding, for each ray: a share of the coordinates' size."""
     size = np.abs(rays[..., :3]).max(-1) + 1
     return ROUNDING * size / np.linalg.norm(rays[..., 4:7], axis=-1)
 
@@ -35,7 +35,7 @@ def explain_any(ray, spheres):
     inside = lambda t, slack: (t >= ray[3] - slack) & (t < ray[7] + slack)
     surely = off < 1 - TANGENT
     if (surely & (inside(near, -eps) | inside(far, -eps))).any():
-        return "other"  # a hit beyond doubt: one of the two is wrong
+        return "other"  # certainly a hit: one of the two is wrong
     if ((np.abs(off - 1) <= TANGENT) & (inside(near, eps) | inside(far, eps))).any():
         return "tangent"
     if (surely & (inside(near, eps) | inside(far, eps))).any():
@@ -44,7 +44,7 @@ def explain_any(ray, spheres):
 
 
 def explain_nearest(rays, spheres, ours, theirs):
-    """The same for nearest hits, from the two spheres alone, for many rays at once."""
+    """Why nearest hits may differ, from the two spheres alone, for many rays at once."""
     tangent = np.zeros(len(rays), bool)
     exact = []
     for hits in (ours, theirs):

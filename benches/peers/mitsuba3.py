@@ -1,7 +1,7 @@
 """Mitsuba 3 in its LLVM variant, which traces through the Embree that it embeds.
 
-Every sphere is a shape of its own, so that loading takes long; larger scenes are refused. Rays have
-no t_min in Mitsuba: origins are moved to it.
+Every sphere is a separate shape, so loading is slow, and larger scenes are not run. Rays have no t_min
+in Mitsuba: their origins are moved to it.
 """
 
 import sys
@@ -23,7 +23,7 @@ def load(mi, scene):
 
 
 def sphere_ids(mi, dr, world):
-    """From Mitsuba's number of a shape, 0 being none, to the sphere's id."""
+    """The sphere's id for each of Mitsuba's shape numbers; 0 is no shape."""
     numbers = dr.reinterpret_array(mi.UInt32, world.shapes_dr()).numpy()
     ids = np.full(numbers.max() + 1, NONE, "<u4")
     ids[numbers] = [int(shape.id()[1:]) for shape in world.shapes()]
@@ -58,7 +58,7 @@ def main():
         dr.eval(ray)
         coherent = kind == "primary"
         best = float("inf")
-        for turn in range(args.repeat + 1):  # the first compiles
+        for turn in range(args.repeat + 1):  # the first turn compiles
             dr.sync_thread()
             start = time.perf_counter()
             if kind in NEAREST:

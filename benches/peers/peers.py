@@ -10,7 +10,7 @@ import zipfile
 
 HERE = pathlib.Path(__file__).resolve().parent
 
-# What `run --install` asks apt for; everything else goes into the cache folder.
+# The packages that `run --install` installs with apt; everything else goes into the cache folder.
 DEBIAN = ["g++", "libembree-dev", "libllvm15", "povray", "tachyon"]
 EMBREEX = "embreex==4.4.0.post1"
 MITSUBA = "mitsuba==3.9.1"
@@ -21,11 +21,11 @@ CXXFLAGS = [
 
 
 class Missing(Exception):
-    """Why a peer cannot run here."""
+    """The reason why a peer cannot run on this machine."""
 
 
 def call(*command, **env):
-    """Runs a step of an installation; the last line of its complaint becomes the reason."""
+    """Runs a step of an installation. If it fails, its last error line is the reason."""
     command = [str(word) for word in command]
     try:
         done = subprocess.run(command, text=True, capture_output=True, cwd=HERE, env=os.environ | env)
@@ -37,7 +37,7 @@ def call(*command, **env):
         raise Missing(f"{pathlib.Path(command[0]).name}: {(errors or lines)[-1].strip()}")
 
 
-def on_path(program, how="./run --install asks apt for it"):
+def on_path(program, how="./run --install installs it with apt"):
     if not shutil.which(program):
         raise Missing(f"{program} is not installed ({how})")
 
@@ -51,7 +51,7 @@ def embree(cache, out, *flags):
 
 
 def embree4(cache):
-    # Any Python's wheel does: only the libraries in it are used.
+    # The wheel for any Python will do: only its libraries are used.
     wheels = cache / "embreex"
     if not list(wheels.glob("*.libs")):
         call(
@@ -69,7 +69,7 @@ def embree4(cache):
 
 def embree3(cache):
     if not pathlib.Path("/usr/include/embree3/rtcore.h").exists():
-        raise Missing("libembree-dev is not installed (./run --install asks apt for it)")
+        raise Missing("libembree-dev is not installed (./run --install installs it with apt)")
     return embree(cache, "embree3", "-DEMBREE3", "-lembree3")
 
 
@@ -108,7 +108,7 @@ def cuda(name, *flags):
     return prepare
 
 
-# Name: how to prepare it, and the arguments that tell it from others of the same program.
+# Name: how to prepare the peer, and the arguments that select it in its program.
 ON_CPU = {
     "embree4-points": (embree4, ["--geometry", "points"]),
     "embree4-callback": (embree4, ["--geometry", "callback"]),
@@ -131,6 +131,6 @@ ON_GPU = {
 
 
 def install():
-    """What the peers need from Debian; needs root."""
+    """Installs the peers' Debian packages; needs root."""
     subprocess.run(["apt-get", "update"], check=True)
     subprocess.run(["apt-get", "install", "--yes", *DEBIAN], check=True)

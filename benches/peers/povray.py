@@ -1,7 +1,7 @@
 """POV-Ray, as a whole program: flat white spheres on black, no lights, one ray a pixel.
 
-Tracing is its "Trace Time", building its "Bounding Time"; +BM2 asks for its BSP tree, which traces
-faster than its default.
+Tracing is its "Trace Time", building its "Bounding Time"; +BM2 selects its BSP tree, which traces
+faster than the default.
 """
 
 import pathlib

@@ -1,4 +1,4 @@
-"""The scene folder that `spherule bench --export` writes, and the way to answer it."""
+"""The scene folder that `spherule bench --export` writes, and the report of a peer."""
 
 import argparse
 import json
@@ -31,7 +31,7 @@ class Scene:
         return np.fromfile(self.folder / f"{kind}.f32", "<f4").reshape(-1, 8)
 
     def answers(self, kind, folder=None):
-        """spherule's answers, or those that a peer left in a folder."""
+        """spherule's answers, or those that a peer wrote to a folder."""
         path = pathlib.Path(folder or self.folder) / f"{kind}.hits"
         return np.fromfile(path, answer_type(kind))
 
@@ -47,7 +47,7 @@ def arguments(description):
 
 
 def report(peer, version, scene, threads, build_s, kinds, bytes=None, **more):
-    """Prints a peer's line."""
+    """Prints a peer's report as a line of JSON."""
     line = dict(peer=peer, version=version, scene=scene.name, threads=threads)
     line |= dict(build_s=build_s, bytes=bytes, kinds=kinds, **more)
     print(json.dumps(line))

@@ -3,11 +3,11 @@
 
     slots.py FOLDER [--mrays N] [--floor MICROSECONDS] [--gops N]
 
-FOLDER is what `spherule bench --export` writes. Follows `kernel/src/accel/tiles.rs` tile by tile: what its workgroups list,
-how many steps of four cones and how many rounds of the rung each warp goes through. Slots of each part are those of the
-machine code that NVIDIA's driver makes for an H100 (docs/performance.md). With the rate that `spherule bench` prints, in
-millions of rays a second, the time of a launch that does nothing, and the multiplications a second that `bench` measures, in
-thousands of millions, it prints the share of all slots that are used.
+`spherule bench --export` writes FOLDER. This follows `kernel/src/accel/tiles.rs` tile by tile: the spheres that its
+workgroups list, the steps of four cones, and the rounds of the rung that each warp does. The slots of each part are those
+of the machine code that NVIDIA's driver generates for an H100 (docs/performance.md). Given the rate that `spherule bench`
+prints, in millions of rays a second, the time of an empty launch, and the multiplications a second that `bench` measures, in
+billions, it prints the share of all slots that are used.
 """
 
 import argparse
@@ -17,11 +17,11 @@ import numpy as np
 from scene import Scene
 
 SIDE, WARPS, BLOCK, LISTED, STEP, BITS = 32, 8, (4, 8), 256, 4, 32
-# Slots of a warp: once, for two looks at a sphere, for a cone, to put an index on the list.
+# Slots of a warp: once, for two tests of spheres, for a cone, for putting an index on the list.
 ONCE, LOOKS, CONE, PUT = 150, 76, 38, 26
-# Of the one warp that makes the planes and the rows.
+# Slots of the one warp that computes the planes and the rows.
 PLANES = 98
-# Of a block of 8 x 4 pixels without and with a list, of a step, of having more than one of them, of a round.
+# Slots of a block of 8 x 4 pixels without and with a list, of a step, of having several steps, of a round.
 EMPTY, PIXELS, TESTS, MORE, ROUND = 25, 81, 25, 13, 50
 LANES = 32
 
@@ -57,7 +57,7 @@ def count(scene):
             farthest = np.min([away @ normal for normal in planes], axis=0)
             seen = np.flatnonzero((farthest >= 0) | (farthest**2 <= squared))
             if len(seen) > LISTED:
-                raise SystemExit(f"{len(seen)} spheres are seen in one tile: longer lists than {LISTED} are not followed")
+                raise SystemExit(f"{len(seen)} spheres are visible in one tile: lists longer than {LISTED} are not supported")
             rows = np.arange(top, min(top + SIDE, height) // BLOCK[0] * BLOCK[0])
             columns = np.arange(left, min(left + SIDE, width) // BLOCK[1] * BLOCK[1])
             blocks = len(rows) * len(columns) // LANES
@@ -96,7 +96,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("scene", type=Scene, metavar="FOLDER")
     parser.add_argument("--mrays", type=float, metavar="N", help="millions of rays a second")
-    parser.add_argument("--floor", type=float, default=0.0, metavar="US", help="what an empty launch takes")
+    parser.add_argument("--floor", type=float, default=0.0, metavar="US", help="the time of an empty launch")
     parser.add_argument("--gops", type=float, default=31430, metavar="N", help="10^9 multiplications a second")
     args = parser.parse_args()
     found = count(args.scene)

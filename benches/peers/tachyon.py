@@ -35,10 +35,10 @@ def words(vector):
 
 
 def write(scene, path):
-    """Writes the scene; returns whether Tachyon's picture of it is mirrored."""
+    """Writes the scene; returns whether Tachyon's image of it is mirrored."""
     eye, forward, right, up = (np.array(scene.camera[k], float) for k in ("eye", "forward", "right", "up"))
-    # Tachyon's plane lies at distance one. Its rays pass through the upper right corners of
-    # pixels; half a pixel to the left and down they pass through the centres.
+    # Tachyon's image plane is at distance one. Its rays pass through the upper right corners of
+    # pixels; the shift by half a pixel to the left and down moves them to the centres.
     half = scene.camera["half_height"] / np.linalg.norm(forward)
     wide, pixel = half * scene.width / scene.height, half / scene.height
     head = HEAD.format(

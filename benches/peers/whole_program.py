@@ -1,4 +1,4 @@
-"""What the peers share that are whole programs: run them, read the time and the picture."""
+"""Shared by peers that are whole programs: runs them, reads their time and their image."""
 
 import re
 import shutil
@@ -15,7 +15,7 @@ def need(program):
 
 
 def run(command, folder):
-    """Runs a program in a folder; returns what it printed and the seconds that it took."""
+    """Runs a program in a folder; returns its output and its time in seconds."""
     start = time.perf_counter()
     done = subprocess.run(command, cwd=folder, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
     seconds = time.perf_counter() - start
@@ -27,7 +27,7 @@ def run(command, folder):
 def number(pattern, text):
     found = re.search(pattern, text)
     if not found:
-        sys.exit(f"no match for {pattern!r} in what the program printed")
+        sys.exit(f"no match for {pattern!r} in the program's output")
     return float(found[1])
 
 
@@ -43,7 +43,7 @@ def lit(path):
 
 
 def answer(scene, args, mask, seconds):
-    """The `kinds` of a report, and the mask of hits where it is asked for."""
+    """The `kinds` of a report; also writes the mask of hits if it is requested."""
     if args.hits:
         mask.astype("<u4").tofile(args.hits / "primary.mask")
     return dict(primary=dict(seconds=seconds, hits=int(mask.sum())))

@@ -1,14 +1,14 @@
-// Brute force in CUDA, for comparison: every camera ray against every sphere, the formula of a
-// textbook in 32-bit floats.
+// Brute force in CUDA, for comparison: every camera ray is tested with every sphere, by the textbook
+// formula in 32-bit floats.
 //
 // --variant plain:  one thread a pixel, spheres from global memory.
-// --variant tricks: a block lists the spheres that four planes around its 32 x 32 pixels let pass, in shared memory, with the
-//                   cones that they fill seen from the one origin ((C - O) / sqrt(o.o - r^2)). Pixel by pixel a thread
-//                   compares cones by three multiply-adds and a difference, four between two branches, up to 32 before those that the
-//                   ray may hit are solved for t as the renderer does. Blocks begin with the middle rows.
+// --variant tricks: a block culls spheres with four planes around its 32 x 32 pixels, and lists the rest in shared memory, with
+//                   the cones that they fill seen from the common origin ((C - O) / sqrt(o.o - r^2)). For each pixel a thread
+//                   tests cones with three multiply-adds and a difference, four between two branches. After up to 32, it solves
+//                   for t, as the renderer does, for the spheres that the ray may hit. Blocks start with the middle rows.
 #include "scene.h"
 
-// Each kernel writes what the renderer it is compared with writes: a colour and a depth.
+// Each kernel writes what the renderer writes: a colour and a depth.
 __device__ float4 pixel(float t) { return make_float4(t < 1e30f, 0.0f, 0.0f, t); }
 
 __global__ void plain(Camera camera, int width, int height, int count, const float4 *spheres,
@@ -39,7 +39,7 @@ constexpr int LISTED = 256, BATCH = 1 << 14, SMALL_BATCH = LISTED / 2;
 
 __device__ float dot(float3 a, float3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
-// The way to the sphere's centre, in units of the distance at which rays touch it; and what is added for those that every ray meets.
+// The vector to the sphere's centre, in units of the distance at which rays touch it; and an offset for spheres that every ray meets.
 __device__ float4 cone(float4 s, float3 eye) {
     float3 o = make_float3(s.x - eye.x, s.y - eye.y, s.z - eye.z);
     float oo = dot(o, o), rr = s.w * s.w, c = (oo - rr) - (oo + rr) * (1.0f / (1 << 18));
@@ -59,7 +59,7 @@ __device__ float3 plane(float3 forward, float3 offset, float3 axis, float3 towar
     return make_float3(n.x * scale, n.y * scale, n.z * scale);
 }
 
-// Whether a sphere is beyond one of the planes.
+// Whether a sphere is entirely outside one of the planes.
 __device__ bool misses(const float3 planes[4], float4 s, float3 eye) {
     float3 o = make_float3(s.x - eye.x, s.y - eye.y, s.z - eye.z);
     float oo = dot(o, o), rr = s.w * s.w;
@@ -79,7 +79,7 @@ __device__ float solve(float4 s, float3 eye, float3 d) {
     return discriminant >= 0.0f && t >= 1e-30f ? t : 3.4e38f;
 }
 
-// Shifts in whether the ray misses each of a step's cones.
+// Shifts in a bit for each of a step's cones: whether the ray misses it.
 __device__ unsigned step(unsigned misses, const float4 *cones, float3 d, float length) {
 #pragma unroll
     for (int k = 0; k < STEP; k++) {

@@ -1,7 +1,7 @@
 // spherule's walk through its tree of boxes in CUDA, for comparison: the same nodes, in the same order,
 // with the same bounds and the same formula for a sphere (kernel/src/accel/walk.rs, kernel/src/precision/robust.rs).
-// What differs is the language and its compiler, and that spheres are asked about one at a time for the nearest: two,
-// as there, is slower here, and so is the formula without its branch.
+// The differences are the language and its compiler, and that spheres are tested one at a time for the nearest hit: two at a
+// time, as in spherule, is slower here, and so is the formula without its branch.
 #include "scene.h"
 
 struct Ray {
@@ -160,7 +160,7 @@ __device__ Hit walk(Ray ray, const Node *__restrict__ nodes, const float4 *__res
         uint32_t met = slabs.meets(point(corner), node.sides, end), inner = corner.w;
         uint32_t candidates = (met * 15) & links.z;
         met &= inner >> 1;
-        // The index of the lowest bit's sphere, which is taken out if there are others.
+        // The index of the lowest bit's sphere, which is removed if there are others.
         auto take = [&](uint32_t &bits, int &bit) {
             bit = __ffs(bits) - 1;
             uint32_t rest = bits & (bits - 1);
@@ -205,7 +205,7 @@ __device__ Hit walk(Ray ray, const Node *__restrict__ nodes, const float4 *__res
     return nearest < ray.t_max ? Hit{nearest, hit} : Hit{NONE_T, NONE};
 }
 
-// A colour's room and a depth's, as the renderer writes them; the first two hold the hit.
+// Room for a colour and a depth, as the renderer writes them; the first two numbers hold the hit.
 __global__ void primary(Camera camera, int width, int height, const Node *nodes, const float4 *spheres,
                         float4 *pixels) {
     int x = blockIdx.x * blockDim.x + threadIdx.x, y = blockIdx.y * blockDim.y + threadIdx.y;

@@ -76,7 +76,7 @@ void write_all(const std::string& path, const std::vector<T>& items) {
     if (!file) die("cannot write " + path);
 }
 
-// meta.json is written by one program in one shape; a full parser is not worth a dependency here.
+// meta.json is always written by the same program in the same form; a full parser is not worth a dependency.
 std::string meta_value(const std::string& meta, const std::string& key) {
     size_t at = meta.find('"' + key + '"');
     if (at == std::string::npos) die("no " + key + " in meta.json");
@@ -173,7 +173,7 @@ void bounds(const RTCBoundsFunctionArguments* args) {
     b.upper_x = s.x + s.r, b.upper_y = s.y + s.r, b.upper_z = s.z + s.r;
 }
 
-// What differs between the two versions of the API.
+// The differences between the two versions of the API.
 
 #ifdef EMBREE3
 struct Query {
@@ -205,7 +205,7 @@ struct Query {
 
 // Tracing.
 
-// 16 rays side by side, in the order of Embree's fields, and where their answers go.
+// 16 rays in the layout of Embree's fields, and where their answers go.
 struct alignas(64) Packet {
     float org_tnear[4][16], dir[3][16], tfar[16];
     int valid[16];

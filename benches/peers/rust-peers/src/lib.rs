@@ -1,4 +1,4 @@
-//! What the Rust peers share: the scene on disk, one ray against one sphere, timing and output.
+//! Shared by the Rust peers: the scene on disk, the test of a ray with a sphere, timing and output.
 //!
 //! Every peer is called as `PEER DIR [--threads N] [--repeat 3] [--hits FOLDER] [--variant NAME]`
 //! and prints one line of JSON.
@@ -64,7 +64,7 @@ pub struct Ray {
     pub t_max: f32,
 }
 
-/// Where a ray ends: t and the sphere's id, which is [`NONE`] for a miss.
+/// A hit: t and the sphere's id, which is [`NONE`] for a miss.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
 pub struct Hit {
@@ -81,10 +81,10 @@ pub trait Peer: Sized + Sync {
     const NAME: &str;
     const VERSION: &str;
 
-    /// Builds the structure; runs on the pool of threads that traces.
+    /// Builds the structure; runs on the thread pool that traces.
     fn build(spheres: &[Sphere], variant: Option<&str>) -> Result<Self, String>;
 
-    /// What the structure holds while rays are traced, the spheres included.
+    /// The memory of the structure while rays are traced, spheres included, in bytes.
     fn bytes(&self) -> usize;
 
     fn nearest(&self, ray: &Ray) -> Hit;
@@ -151,7 +151,7 @@ fn read<T: Pod>(path: &Path) -> Result<Vec<T>, String> {
     Ok(bytemuck::pod_collect_to_vec(&bytes))
 }
 
-/// Traces all rays `repeat` times and returns the answers and the seconds of the fastest time.
+/// Traces all rays `repeat` times; returns the answers and the fastest time in seconds.
 fn trace<A: Copy + Send + Zeroable>(rays: &[Ray], repeat: usize, answer: impl Fn(&Ray) -> A + Sync) -> (Vec<A>, f64) {
     const PIECE: usize = 1024;
     let mut answers = vec![A::zeroed(); rays.len()];

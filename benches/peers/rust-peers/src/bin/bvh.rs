@@ -29,7 +29,7 @@ impl BHShape<f32, 3> for Shape {
     }
 }
 
-/// The crate's own rays have no end; this one has, in the units of the crate's t.
+/// The crate's own rays have no end. This one has, in units of the crate's t.
 struct Segment {
     ray: bvh::ray::Ray<f32, 3>,
     t_min: f32,
@@ -49,7 +49,7 @@ struct Peered {
     shapes: Vec<Shape>,
 }
 
-/// The crate's ray has a unit direction; returns it with the length of the ray's own.
+/// The crate's ray, whose direction has unit length, with the length of the original direction.
 fn ray_of(ray: &Ray) -> (bvh::ray::Ray<f32, 3>, f32) {
     let direction = Vector3::from(ray.direction);
     (bvh::ray::Ray::new(Point3::from(ray.origin), direction), direction.norm())

@@ -1,6 +1,6 @@
 //! The crate obvhs: a PLOC build with reinsertion, traversed as an eight-wide compressed tree
 //! (`--variant cwbvh`) or as a binary one (`--variant bvh2`). A preset of the crate may follow, as in
-//! `cwbvh-medium`; without one it is the slowest build, which traces fastest.
+//! `cwbvh-medium`; the default is the slowest build, which traces fastest.
 
 use std::time::Duration;
 
@@ -29,7 +29,7 @@ enum Tree {
 
 struct Obvhs {
     tree: Tree,
-    // In the order of the leaves, which saves a look-up at each.
+    // In the order of the leaves, which saves a look-up at each leaf.
     spheres: Vec<Sphere>,
 }
 

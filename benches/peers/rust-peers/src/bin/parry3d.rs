@@ -41,7 +41,7 @@ impl Peer for Parry {
     }
 
     fn any(&self, ray: &Ray) -> bool {
-        // The first hit claims to lie before everything else, which ends the traversal.
+        // The first hit is reported as nearer than everything else, which ends the traversal.
         let meet = |id: u32, _: f32| {
             (self.spheres[id as usize].meet(ray, ray.t_max) < ray.t_max).then_some(f32::NEG_INFINITY)
         };
