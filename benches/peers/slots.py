@@ -21,7 +21,8 @@ SIDE, WARPS, BLOCK, LISTED, STEP, BITS = 32, 8, (4, 8), 256, 4, 32
 ONCE, LOOKS, CONE, PUT = 150, 76, 38, 26
 # Slots of the one warp that computes the planes and the rows.
 PLANES = 98
-# Slots of a block of 8 x 4 pixels without and with a list, of a step, of having several steps, of a round.
+# Slots of a block of 8 x 4 pixels without and with a list, of a step, of having several steps, of
+# a round.
 EMPTY, PIXELS, TESTS, MORE, ROUND = 25, 81, 25, 13, 50
 LANES = 32
 

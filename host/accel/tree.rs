@@ -40,7 +40,8 @@ impl Acceleration {
     }
 }
 
-/// The nodes of a tree that this module built, the first of them an [`Extent`]; or no nodes.
+/// The nodes of a tree that this module built, the first of them an
+/// [`Extent`](spherule_kernel::accel::node::Extent); or no nodes.
 #[derive(Clone, Debug, Default)]
 pub struct Nodes(pub(super) Vec<Node>);
 

@@ -205,7 +205,7 @@ mod tests {
         let error = Error::Scene(Box::new(SceneError {
             path: "a\x1b[2J.toml".into(),
             message: "is wrong".into(),
-            help: "mend it".into(),
+            help: "fix it".into(),
             place: Some(Place {
                 text: text.into(),
                 span: start..start + wrong.len(),

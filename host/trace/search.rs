@@ -258,7 +258,7 @@ impl Search {
         while found != 0 {
             let index = first + found.trailing_zeros();
             found &= found - 1;
-            // SAFETY: the caller says that the sphere exists.
+            // SAFETY: bits are set only for spheres that exist.
             let sphere = unsafe { spheres.sphere(index) };
             if self.is_lazy {
                 if self.is_certain(sphere, index) {

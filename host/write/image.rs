@@ -24,7 +24,8 @@ impl Room {
     ///
     /// # Errors
     ///
-    /// [`Error::OutOfHostMemory`] if the host does not have that much.
+    /// [`Error::OutOfHostMemory`](crate::Error::OutOfHostMemory) if the host does not have that
+    /// much.
     pub fn reserve(format: Format, width: u32, height: u32, has_alpha: bool) -> Result<Self> {
         let encoder = match format {
             Format::Png => png::room(width, has_alpha),
@@ -42,8 +43,10 @@ impl Image {
     ///
     /// # Errors
     ///
-    /// [`Error::OutputRefused`] if the extension is unknown, [`Error::Output`] if the file cannot
-    /// be written, [`Error::OutOfHostMemory`] if there is no memory for its rows.
+    /// [`Error::OutputRefused`](crate::Error::OutputRefused) if the extension is unknown,
+    /// [`Error::Output`](crate::Error::Output) if the file cannot be written,
+    /// [`Error::OutOfHostMemory`](crate::Error::OutOfHostMemory) if there is no memory for its
+    /// rows.
     pub fn save(&self, path: impl AsRef<Path>) -> Result<()> {
         let output = Output::image(path.as_ref())?;
         let has_alpha = self.has_alpha();

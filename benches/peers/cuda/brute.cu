@@ -1,11 +1,13 @@
-// Brute force in CUDA, for comparison: every camera ray is tested with every sphere, by the textbook
-// formula in 32-bit floats.
+// Brute force in CUDA, for comparison: every camera ray is tested with every sphere, by the
+// textbook formula in 32-bit floats.
 //
 // --variant plain:  one thread a pixel, spheres from global memory.
-// --variant tricks: a block culls spheres with four planes around its 32 x 32 pixels, and lists the rest in shared memory, with
-//                   the cones that they fill seen from the common origin ((C - O) / sqrt(o.o - r^2)). For each pixel a thread
-//                   tests cones with three multiply-adds and a difference, four between two branches. After up to 32, it solves
-//                   for t, as the renderer does, for the spheres that the ray may hit. Blocks start with the middle rows.
+// --variant tricks: a block culls spheres with four planes around its 32 x 32 pixels, and lists
+//                   the rest in shared memory, with the cones that they fill seen from the common
+//                   origin ((C - O) / sqrt(o.o - r^2)). For each pixel a thread tests cones with
+//                   three multiply-adds and a difference, four between two branches. After up to
+//                   32, it solves for t, as the renderer does, for the spheres that the ray may
+//                   hit. Blocks start with the middle rows.
 #include "scene.h"
 
 // Each kernel writes what the renderer writes: a colour and a depth.
@@ -39,7 +41,8 @@ constexpr int LISTED = 256, BATCH = 1 << 14, SMALL_BATCH = LISTED / 2;
 
 __device__ float dot(float3 a, float3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
-// The vector to the sphere's centre, in units of the distance at which rays touch it; and an offset for spheres that every ray meets.
+// The vector to the sphere's centre, in units of the distance at which rays touch it; and an offset
+// for spheres that every ray meets.
 __device__ float4 cone(float4 s, float3 eye) {
     float3 o = make_float3(s.x - eye.x, s.y - eye.y, s.z - eye.z);
     float oo = dot(o, o), rr = s.w * s.w, c = (oo - rr) - (oo + rr) * (1.0f / (1 << 18));
@@ -52,7 +55,8 @@ __device__ float3 cross(float3 a, float3 b) {
     return make_float3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
 }
 
-// The unit normal of the plane through the eye along a ray and an axis of the film, towards a direction.
+// The unit normal of the plane through the eye along a ray and an axis of the film, towards a
+// direction.
 __device__ float3 plane(float3 forward, float3 offset, float3 axis, float3 towards) {
     float3 n = cross(make_float3(forward.x + offset.x, forward.y + offset.y, forward.z + offset.z), axis);
     float scale = copysignf(rsqrtf(dot(n, n)), dot(n, towards));

@@ -1,4 +1,5 @@
-// Shared by the CUDA peers: reading the folder that `spherule bench --export` writes, and the report.
+// Shared by the CUDA peers: reading the folder that `spherule bench --export` writes, and the
+// report.
 #pragma once
 #include <algorithm>
 #include <cstdint>
@@ -28,7 +29,8 @@ struct Camera {
 
 __host__ __device__ inline float3 times(float3 v, float by) { return make_float3(v.x * by, v.y * by, v.z * by); }
 
-// The position of a pixel's middle on the film: from -1 on the left to 1 on the right, and from 1 at the top to -1 at the bottom.
+// The position of a pixel's middle on the film: from -1 on the left to 1 on the right, and from 1 at
+// the top to -1 at the bottom.
 __device__ inline float film_x(int x, int width) { return (2 * x + 1 - width) / (float)width; }
 __device__ inline float film_y(int y, int height) { return (height - 2 * y - 1) / (float)height; }
 

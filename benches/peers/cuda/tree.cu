@@ -1,7 +1,8 @@
-// spherule's walk through its tree of boxes in CUDA, for comparison: the same nodes, in the same order,
-// with the same bounds and the same formula for a sphere (kernel/src/accel/walk.rs, kernel/src/precision/robust.rs).
-// The differences are the language and its compiler, and that spheres are tested one at a time for the nearest hit: two at a
-// time, as in spherule, is slower here, and so is the formula without its branch.
+// spherule's walk through its tree of boxes in CUDA, for comparison: the same nodes, in the same
+// order, with the same bounds and the same formula for a sphere (kernel/src/accel/walk.rs,
+// kernel/src/precision/robust.rs). The differences are the language and its compiler, and that
+// spheres are tested one at a time for the nearest hit: two at a time, as in spherule, is slower
+// here, and so is the formula without its branch.
 #include "scene.h"
 
 struct Ray {

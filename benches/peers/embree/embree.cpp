@@ -76,7 +76,8 @@ void write_all(const std::string& path, const std::vector<T>& items) {
     if (!file) die("cannot write " + path);
 }
 
-// meta.json is always written by the same program in the same form; a full parser is not worth a dependency.
+// meta.json is always written by the same program in the same form; a full parser is not worth a
+// dependency.
 std::string meta_value(const std::string& meta, const std::string& key) {
     size_t at = meta.find('"' + key + '"');
     if (at == std::string::npos) die("no " + key + " in meta.json");

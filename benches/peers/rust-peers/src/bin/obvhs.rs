@@ -1,6 +1,6 @@
 //! The crate obvhs: a PLOC build with reinsertion, traversed as an eight-wide compressed tree
-//! (`--variant cwbvh`) or as a binary one (`--variant bvh2`). A preset of the crate may follow, as in
-//! `cwbvh-medium`; the default is the slowest build, which traces fastest.
+//! (`--variant cwbvh`) or as a binary one (`--variant bvh2`). A preset of the crate may follow, as
+//! in `cwbvh-medium`; the default is the slowest build, which traces fastest.
 
 use std::time::Duration;
 
