@@ -68,8 +68,8 @@ pub fn page(
             format!(
                 ", {rays} rays a family, every answer judged by exact arithmetic. Left: the largest error of the \
                  distance t against the time of one ray-sphere test; lower and further left is better, a bar goes from \
-                 the fastest round to the slowest, and the dashed line joins the rungs that no other beats in both. A number beside a name counts the rays that were put on the wrong side of a silhouette. Right: \
-                 the distribution of the errors of the hits."
+                 the fastest round to the slowest, and the dashed line joins the rungs that no other beats in both. A number beside a name \
+                 counts the rays that were put on the wrong side of a silhouette. Right: the distribution of the errors of the hits."
             )
         },
     );

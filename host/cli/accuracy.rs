@@ -340,8 +340,8 @@ fn steps_table(report: &Report) -> String {
     }
     text.push_str(
         "\nerror: root mean square of the luminance against the image of many samples, over the mean.\n\
-         estimate: the render's own estimate, which assumes that samples are independent, though they are stratified. error² × ms\n\
-         is constant if the error falls as 1/√N, and falls if the error falls faster.\n",
+         estimate: the render's own, which assumes that samples are independent, though they are stratified.\n\
+         error² × ms is constant if the error falls as 1/√N, and falls if the error falls faster.\n",
     );
     text
 }
@@ -406,9 +406,9 @@ fn table(report: &Report) -> String {
     }
     text.push_str(
         "ulp: error of t in units in the last place, over the hits, or \"no digit\" if no digit is right.\n\
-         false, missed: reported hits that are misses, hits that were not found. margin: the largest |Δ| / (a r²) on the wrong side\n\
-         of a silhouette. self: rays that leave a hit outwards and hit its sphere again. normal°: the largest error of\n\
-         the normal.\n",
+         false, missed: reported hits that are misses, hits that were not found. margin: the largest |Δ| / (a r²)\n\
+         on the wrong side of a silhouette. self: rays that leave a hit outwards and hit its sphere again.\n\
+         normal°: the largest error of the normal.\n",
     );
     text
 }
