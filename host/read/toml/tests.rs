@@ -527,7 +527,7 @@ fn among_many_spheres_a_mistake_is_found() {
         error
             .expect_err("too long")
             .to_string()
-            .contains("longer than")
+            .contains("has more than")
     );
     assert!(
         read(&long)
