@@ -1,16 +1,16 @@
-//! Chooses the SPIR-V that the library embeds: the committed modules, or ones that rust-gpu
-//! compiles here and now (feature `compile-kernel`).
+//! Chooses the SPIR-V that the library embeds: the committed modules, or modules that rust-gpu
+//! compiles during the build (feature `compile-kernel`).
 //!
-//! The committed modules stand for the kernel's sources only as long as their manifest says so.
-//! This script writes the manifest that the sources on disk call for and compares the two texts;
-//! a kernel that was edited without being compiled stops the build.
+//! The committed modules are used only if they were compiled from the kernel's current sources.
+//! This script writes the manifest of the sources on disk and compares it with the committed
+//! manifest; if the kernel was edited and not compiled, the build stops.
 
 use std::error::Error;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
-/// The modules, one for each set of capabilities that a device may have.
+/// The kernel's modules, one for each set of capabilities that a device may have.
 const MODULES: &[Module] = &[
     Module {
         name: "f32",
@@ -24,10 +24,10 @@ const MODULES: &[Module] = &[
     },
 ];
 
-/// The toolchain that rust-gpu 0.11 is built against; rust-gpu itself knows it too, and installs it.
+/// The toolchain that rust-gpu 0.11 is built with. rust-gpu knows it, too, and installs it.
 const NIGHTLY: &str = "nightly-2026-08-15";
 
-/// The SPIR-V that they are compiled to.
+/// The target that the modules are compiled for.
 const TARGET: &str = "spirv-unknown-spv1.3";
 
 struct Module {
@@ -46,7 +46,7 @@ type Result<T> = std::result::Result<T, Box<dyn Error>>;
 
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
-    // Deletes effects from the kernel; see its `effects.rs`.
+    // This variable leaves effects out of the kernel; see its `effects.rs`.
     println!("cargo::rerun-if-env-changed=SPHERULE_EFFECTS");
     if let Err(error) = run() {
         println!("cargo::error={error}");
@@ -57,7 +57,7 @@ fn main() {
 fn run() -> Result<()> {
     println!("cargo::rustc-check-cfg=cfg(kernel_compiled_here)");
     // In the repository the kernel is beside this script. Elsewhere its package says where it is;
-    // that answer is cached, and would be wrong after the repository was moved.
+    // cargo caches that path, which would be wrong if the repository was moved.
     let beside = PathBuf::from(env_var("CARGO_MANIFEST_DIR")?).join("kernel");
     let kernel = if beside.join("Cargo.toml").is_file() {
         beside
@@ -93,9 +93,9 @@ fn check_committed(kernel: &Path) -> Result<()> {
         .into())
 }
 
-/// The manifest as compared: away from this workspace (in a package from a registry) the lock
-/// file is the dependant's, what it locks did not make the committed modules, and cargo has
-/// written the kernel's Cargo.toml anew.
+/// The manifest without the lines that are not compared. Outside this workspace (in a package from
+/// a registry) the lock file is the dependant's, the committed modules were not compiled with its
+/// versions, and cargo has rewritten the kernel's Cargo.toml.
 #[cfg(not(feature = "compile-kernel"))]
 fn without_dependencies(manifest: &str, kernel: &Path) -> String {
     let keep_all = workspace_lock(kernel).is_some();
@@ -106,7 +106,7 @@ fn without_dependencies(manifest: &str, kernel: &Path) -> String {
         .collect()
 }
 
-/// What the modules in `modules` were made of, as TOML.
+/// The manifest in TOML: what the modules in the folder `modules` were compiled from.
 fn manifest(kernel: &Path, modules: &Path) -> Result<String> {
     let mut text = String::from(
         "# Written by the test `kernel_spirv`; read by build.rs. What the modules beside this file are made of.\n",
@@ -144,7 +144,8 @@ fn manifest(kernel: &Path, modules: &Path) -> Result<String> {
     Ok(text)
 }
 
-/// The SHA-256 of every file below `dir`, by path, line ends made `\n`.
+/// The SHA-256 of the Rust files below `dir`: of their paths and contents, sorted by path, with
+/// `\n` as line ends.
 fn digest_sources(dir: &Path) -> Result<String> {
     let mut files = Vec::new();
     collect_files(dir, &mut files)?;
@@ -177,7 +178,7 @@ fn collect_files(dir: &Path, files: &mut Vec<PathBuf>) -> Result<()> {
     Ok(())
 }
 
-/// The lock file, where the kernel is the one beside this script.
+/// The content of the lock file; `None` unless the kernel is the one beside this script.
 fn workspace_lock(kernel: &Path) -> Option<String> {
     let root = PathBuf::from(env::var_os("CARGO_MANIFEST_DIR")?);
     let is_ours = kernel.canonicalize().ok()? == root.join("kernel").canonicalize().ok()?;
@@ -192,9 +193,9 @@ fn workspace_lock(kernel: &Path) -> Option<String> {
         .flatten()
 }
 
-/// The locked versions of what ends up in the kernel's code, as TOML strings.
+/// The locked versions of the crates in the kernel's code, as TOML strings.
 fn locked_dependencies(lock: &str) -> Vec<String> {
-    // spirv-std can use several versions of glam, and the lock file holds them all.
+    // spirv-std can use several versions of glam, and the lock file has all of them.
     const IN_THE_KERNEL: &[(&str, &str)] = &[
         ("bytemuck", ""),
         ("cargo-gpu-install", ""),
@@ -240,7 +241,7 @@ mod compile {
     use cargo_gpu_install::install::Install;
     use cargo_gpu_install::spirv_builder::Capability;
 
-    /// Compiles every module of `kernel` into `out`.
+    /// Compiles every module of `kernel` into the folder `out`.
     pub(super) fn compile(kernel: &Path, out: &Path) -> Result<()> {
         fs::create_dir_all(out)?;
         let backend = Install::from_shader_crate(kernel.to_path_buf())

@@ -1,5 +1,5 @@
-//! Writes `scenes/one-weekend.toml`: a scene laid out as the final one of P. Shirley, T. D. Black and
-//! S. Hollasch, Ray Tracing in One Weekend, from a fixed seed.
+//! Writes `scenes/one-weekend.toml`: a scene laid out like the final scene of P. Shirley, T. D.
+//! Black and S. Hollasch, Ray Tracing in One Weekend, from a fixed seed.
 //!
 //! `cargo run --release --example one_weekend > scenes/one-weekend.toml`
 

@@ -1,14 +1,17 @@
-//! The practical, step 2: the same with the device's own `Sphere` and its `intersect`, run on
-//! the GPU where there is one.
+//! The practical, step 2: the same with `Sphere::intersect`, a function of the device code. It runs
+//! on the GPU if there is one, otherwise on the CPU.
 //!
 //! `cargo run --release --example step2_sphere_type` writes `step2.png`.
 
-use glam::{UVec2, Vec3};
+mod practical;
+
+use glam::Vec3;
 use spherule::device::Access;
-use spherule::kernel::{Camera, Hit, Pixel, Ray, Shading, Sphere};
+use spherule::kernel::{Hit, Pixel, Ray, Shading, Sphere};
 use spherule::{DeviceChoice, Error, Gpu, Image, kernel_module};
 
-/// The parameter of each ray's hit, by the kernel's entry point `intersect_pairs`.
+/// Intersects each ray with the sphere of the same index, by the kernel's entry point
+/// `intersect_pairs`. Returns the parameter of each ray's hit.
 fn intersect_on_gpu(gpu: &Gpu, rays: &[Ray], spheres: &[Sphere]) -> spherule::Result<Vec<f32>> {
     let kernel = gpu.kernel(
         &kernel_module::f32()?,
@@ -29,18 +32,8 @@ fn intersect_on_gpu(gpu: &Gpu, rays: &[Ray], spheres: &[Sphere]) -> spherule::Re
 }
 
 fn main() -> spherule::Result<()> {
-    let size = UVec2::new(640, 360);
-    let aspect = size.x as f32 / size.y as f32;
-    let camera = Camera::from_basis(
-        Vec3::ZERO,
-        Vec3::NEG_Z,
-        Vec3::X * 0.5 * aspect,
-        Vec3::Y * 0.5,
-    );
-    let rays: Vec<Ray> = (0..size.x * size.y)
-        .map(|index| camera.pixel_ray(UVec2::new(index % size.x, index / size.x), size))
-        .collect();
-    // One sphere a ray, all the same here.
+    let rays = practical::rays();
+    // The entry point takes a sphere for each ray; here all are the same.
     let spheres = vec![Sphere::new(Vec3::new(0.0, 0.0, -3.0), 0.5); rays.len()];
 
     let parameters = match Gpu::open(&DeviceChoice::Gpu) {
@@ -61,10 +54,11 @@ fn main() -> spherule::Result<()> {
     let pixels = parameters
         .into_iter()
         .map(|t| match t {
-            Hit::NONE_T => Pixel::new(Vec3::splat(0.8), t),
+            Hit::NONE_T => practical::miss(),
             t => Pixel::new(Vec3::X, t),
         })
         .collect();
+    let size = practical::SIZE;
     Image::new(size.x, size.y, Shading::Flat, pixels)?.save("step2.png")?;
     println!("wrote step2.png");
     Ok(())

@@ -1,5 +1,5 @@
-//! The practical, step 4: a world of spheres, made on the host with the device's own type and
-//! uploaded in one buffer. The nearest hit wins.
+//! The practical, step 4: a world of spheres. The host makes it with the device's own type and
+//! uploads it in one buffer. Each pixel shows the nearest hit.
 //!
 //! `cargo run --release --example step4_world` writes `step4.png`.
 

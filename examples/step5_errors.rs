@@ -1,5 +1,5 @@
-//! The practical, step 5: every GPU error is reported. Three mistakes are made on purpose; each
-//! comes back as a value that says what happened and what to do, and the device lives on.
+//! The practical, step 5: every GPU error is reported. The program makes three mistakes on purpose.
+//! Each returns an error that says what happened and what to do, and the device still works.
 //!
 //! `cargo run --release --example step5_errors` writes `step5.png`.
 
@@ -14,8 +14,8 @@ fn report(mistake: &str, error: &Error) {
 }
 
 fn make_mistakes(gpu: &Gpu) -> spherule::Result<()> {
-    if let Err(error) = Module::from_bytes("not a kernel", b"these are no SPIR-V words") {
-        report("A kernel that is none:", &error);
+    if let Err(error) = Module::from_bytes("not a kernel", b"this is not a SPIR-V file") {
+        report("Bytes that are not a kernel:", &error);
     }
 
     let kernel = gpu.kernel(
@@ -24,18 +24,18 @@ fn make_mistakes(gpu: &Gpu) -> spherule::Result<()> {
         &[Access::Read, Access::Read, Access::ReadWrite],
     )?;
     if let Err(error) = gpu.launch(&kernel, &[], [u32::MAX, 1, 1]) {
-        report("More workgroups than the device can count:", &error);
+        report("More workgroups than the device allows:", &error);
     }
 
     let rays = gpu.upload("rays", &[Ray::new(Vec3::ZERO, Vec3::X)])?;
-    // The launch itself returns nothing; what went wrong is known once the device has been
-    // waited for, and `launch` waits.
+    // A launch returns nothing. Its errors are known only when the device has finished, so `launch`
+    // waits.
     if let Err(error) = gpu.launch(&kernel, &[rays.binding()], [1, 1, 1]) {
-        report("A launch without its buffers:", &error);
+        report("A launch without all of its buffers:", &error);
     }
 
     gpu.read(&rays).map(|rays| {
-        println!("The device still answers: {:?}\n", rays[0]);
+        println!("The device still works: it returned {:?}\n", rays[0]);
     })
 }
 
@@ -50,7 +50,7 @@ fn main() -> spherule::Result<()> {
         "/scenes/two-spheres.toml"
     ))?;
     (scene.width, scene.height) = (640, 360);
-    // A GPU that fails need not stop the program: the CPU renders the same image.
+    // If the GPU fails, the program goes on: the CPU renders the same image.
     let rendered = Device::open(&DeviceChoice::Gpu)
         .and_then(|(device, _)| render(&scene, Shading::Lit, &device, QUIET))
         .or_else(|error| {

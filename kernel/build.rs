@@ -1,5 +1,5 @@
-//! Tells the packages that depend on this one where its sources and its committed SPIR-V are,
-//! as `DEP_SPHERULE_KERNEL_ROOT`. It compiles nothing.
+//! Tells packages that depend on this one where its sources and its committed SPIR-V are, in
+//! `DEP_SPHERULE_KERNEL_ROOT`. It compiles nothing.
 
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");

@@ -1,4 +1,4 @@
-//! The command line as a user meets it: outputs, messages, exit codes.
+//! The command line as a user sees it: outputs, messages and exit codes.
 
 mod common;
 
@@ -6,6 +6,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use assert_cmd::Command;
+use assert_cmd::assert::Assert;
 use common::skips;
 use predicates::prelude::*;
 use predicates::str::contains;
@@ -17,6 +18,25 @@ fn spherule() -> Command {
     command
 }
 
+/// `spherule render SCENE --device cpu --size SIZE -o OUTPUT`.
+fn render(scene: &str, size: &str, output: &Path) -> Command {
+    let mut command = spherule();
+    command
+        .args(["render", scene, "--device", "cpu", "--size", size, "-o"])
+        .arg(output);
+    command
+}
+
+/// What a command printed, as JSON.
+fn printed_json(assert: &Assert) -> serde_json::Value {
+    serde_json::from_slice(&assert.get_output().stdout).expect("JSON")
+}
+
+fn read_json(path: &Path) -> serde_json::Value {
+    let text = std::fs::read_to_string(path).expect("a file");
+    serde_json::from_str(&text).expect("JSON")
+}
+
 fn temporary() -> tempfile::TempDir {
     tempfile::tempdir().expect("a temporary directory")
 }
@@ -25,24 +45,14 @@ fn temporary() -> tempfile::TempDir {
 fn a_scene_renders_to_png_on_the_cpu() {
     let dir = temporary();
     let out = dir.path().join("out.png");
-    spherule()
-        .args([
-            "render",
-            "scenes/two-spheres.toml",
-            "--device",
-            "cpu",
-            "--size",
-            "64x36",
-            "-o",
-        ])
-        .arg(&out)
+    render("scenes/two-spheres.toml", "64x36", &out)
         .assert()
         .success()
         .stdout("")
         .stderr(contains("rendering on CPU").and(contains("64 × 36 pixels, 2 spheres")));
     let image = image::open(&out).expect("a PNG").to_rgb8();
     assert_eq!(image.dimensions(), (64, 36));
-    // Nothing but the image is left behind.
+    // Only the image is in the folder.
     assert_eq!(
         std::fs::read_dir(dir.path())
             .expect("the directory")
@@ -71,7 +81,7 @@ fn molecules_render_to_exr_with_linear_floats() {
         let farthest = image.pixels().map(|pixel| pixel.0[0]).fold(0.0, f32::max);
         assert!(
             farthest > 10.0,
-            "{input}: distances are in ångström, {farthest} is not"
+            "{input}: the largest depth is {farthest}, in ångström"
         );
     }
 }
@@ -93,23 +103,16 @@ fn without_an_output_the_image_is_named_after_the_input() {
 fn stats_have_every_field() {
     let dir = temporary();
     let stats = dir.path().join("stats.json");
-    spherule()
-        .args([
-            "render",
-            "scenes/two-spheres.toml",
-            "--device",
-            "cpu",
-            "--size",
-            "20x10",
-            "-o",
-        ])
-        .arg(dir.path().join("out.png"))
-        .arg("--stats")
-        .arg(&stats)
-        .assert()
-        .success();
-    let text = std::fs::read_to_string(stats).expect("the stats");
-    let stats: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+    render(
+        "scenes/two-spheres.toml",
+        "20x10",
+        &dir.path().join("out.png"),
+    )
+    .arg("--stats")
+    .arg(&stats)
+    .assert()
+    .success();
+    let stats = read_json(&stats);
     assert_eq!(stats["backend"], "cpu");
     assert_eq!(
         [
@@ -159,8 +162,7 @@ fn check_compares_the_two_paths() {
             .success()
             .stdout("")
             .stderr(contains("check passed").and(contains("largest difference")));
-        let text = std::fs::read_to_string(stats).expect("the stats");
-        let stats: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+        let stats = read_json(&stats);
         assert_eq!(stats["backend"], device);
         assert_eq!(stats["check"]["passed"], true);
         assert_eq!(stats["check"]["pixels"], 4800);
@@ -192,9 +194,9 @@ fn devices_are_listed() {
     }
 }
 
-/// Wrong input: exit code 2, the file, the place, and how to mend it.
+/// A wrong input ends with exit code 2. The message says the file, the place and how to fix it.
 #[test]
-fn wrong_input_is_refused_with_its_place() {
+fn wrong_inputs_are_refused_with_their_place() {
     let dir = temporary();
     let write = |name: &str, content: &[u8]| {
         let path = dir.path().join(name);
@@ -266,7 +268,7 @@ fn wrong_input_is_refused_with_its_place() {
     }
 }
 
-/// Wrong arguments: exit code 2 and a way out.
+/// Wrong arguments end with exit code 2 and a hint.
 #[test]
 fn wrong_arguments_are_refused() {
     for (arguments, message) in [
@@ -284,9 +286,9 @@ fn wrong_arguments_are_refused() {
     }
 }
 
-/// What stands in arguments is shown, and no terminal obeys it.
+/// Messages quote arguments, and their control characters do not reach the terminal.
 #[test]
-fn no_argument_speaks_to_the_terminal() {
+fn no_argument_controls_the_terminal() {
     let odd = "\u{1b}[2J\u{1b}]0;pwn\u{7}\u{202e}";
     for arguments in [
         &["render", "s.toml", "--{}foo"][..],
@@ -304,7 +306,7 @@ fn no_argument_speaks_to_the_terminal() {
         let arguments: Vec<String> = arguments.iter().map(|a| a.replace("{}", odd)).collect();
         let output = spherule()
             .args(&arguments)
-            // As on a terminal, where colours are left in what is printed.
+            // Colours stay in the output, as on a terminal.
             .env("CLICOLOR_FORCE", "1")
             .output()
             .expect("it runs");
@@ -326,7 +328,7 @@ fn no_argument_speaks_to_the_terminal() {
     }
 }
 
-/// No argument makes a command panic or hang, whatever its number or its name.
+/// No number and no name as an argument makes a command panic or hang.
 #[test]
 fn odd_arguments_are_refused_in_every_command() {
     let numbers = [
@@ -417,7 +419,8 @@ fn odd_arguments_are_refused_in_every_command() {
     }
 }
 
-/// A machine that cannot: exit code 1. A name that no device has: the input is wrong, unless there is none at all.
+/// What the machine cannot do ends with exit code 1. A name that no device has is a wrong input,
+/// unless there is no adapter at all.
 #[test]
 fn what_the_machine_cannot_do_is_exit_code_one() {
     let dir = temporary();
@@ -440,7 +443,7 @@ fn what_the_machine_cannot_do_is_exit_code_one() {
             .code(unknown)
             .stderr(contains("no such adapter").and(contains("spherule devices")));
     }
-    // With no driver at all there is nothing that any name could mean.
+    // Without a driver, no name can be right.
     for device in ["gpu", "llvmpipe"] {
         spherule()
             .env("VK_DRIVER_FILES", "/nonexistent")
@@ -450,23 +453,17 @@ fn what_the_machine_cannot_do_is_exit_code_one() {
             .code(1)
             .stderr(contains("no graphics driver"));
     }
-    spherule()
-        .args([
-            "render",
-            "scenes/two-spheres.toml",
-            "--device",
-            "cpu",
-            "--size",
-            "4x4",
-            "-o",
-        ])
-        .arg(dir.path().join("no/such/directory/out.png"))
-        .assert()
-        .code(1)
-        .stderr(contains("cannot be written").and(contains("help: ")));
+    render(
+        "scenes/two-spheres.toml",
+        "4x4",
+        &dir.path().join("no/such/directory/out.png"),
+    )
+    .assert()
+    .code(1)
+    .stderr(contains("cannot be written").and(contains("help: ")));
 }
 
-/// An output that stands is replaced whole, and stays as it was where the render fails.
+/// An existing output is replaced as a whole, and is kept if the render fails.
 #[test]
 fn an_old_image_survives_a_failed_render() {
     let dir = temporary();
@@ -484,23 +481,13 @@ fn an_old_image_survives_a_failed_render() {
         .assert()
         .failure();
     assert_eq!(std::fs::read(&out).expect("the old file"), b"old");
-    spherule()
-        .args([
-            "render",
-            "scenes/two-spheres.toml",
-            "--device",
-            "cpu",
-            "--size",
-            "4x4",
-            "-o",
-        ])
-        .arg(&out)
+    render("scenes/two-spheres.toml", "4x4", &out)
         .assert()
         .success();
     assert!(image::open(&out).is_ok());
 }
 
-/// The CPU path must not touch any graphics driver, nor need one.
+/// The CPU path uses no graphics driver and needs none.
 #[test]
 fn the_cpu_path_works_without_any_driver() {
     let dir = temporary();
@@ -520,7 +507,7 @@ fn the_cpu_path_works_without_any_driver() {
         .stderr(contains("there is no real GPU"));
 }
 
-/// An image that the CPU has done before a GPU is open is done by the CPU.
+/// The CPU renders an image that it finishes before a GPU would be open.
 #[test]
 fn auto_opens_no_gpu_for_a_small_image() {
     let dir = temporary();
@@ -550,7 +537,7 @@ fn help_names_every_command_and_default() {
         );
 }
 
-/// `check` keeps its table, its JSON and its exit code in step.
+/// The table, the JSON and the exit code of `check` agree.
 #[test]
 fn check_reports_every_case_on_every_rung() {
     spherule()
@@ -602,10 +589,9 @@ fn accuracy_writes_a_table_a_page_and_numbers() {
     );
     assert!(
         !page.contains("NaN") && !page.contains("http"),
-        "it needs nothing else"
+        "the page needs no other file"
     );
-    let text = std::fs::read_to_string(numbers).expect("the numbers");
-    let numbers: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+    let numbers = read_json(&numbers);
     let rungs = numbers["families"][0]["rungs"].as_array().expect("a list");
     assert_eq!(rungs.len(), 5);
     assert!(
@@ -616,17 +602,15 @@ fn accuracy_writes_a_table_a_page_and_numbers() {
 }
 
 #[test]
-fn auto_precision_says_what_it_took_and_why() {
+fn auto_precision_says_what_it_chose_and_why() {
     let dir = temporary();
     for (scene, size, rung) in [
         ("scenes/1crn.pdb", "32x18", "robust"),
-        // A pixel of a small image forgives more.
+        // A pixel of a small image tolerates a larger error.
         ("scenes/marble-on-earth.toml", "32x18", "double"),
         ("scenes/marble-on-earth.toml", "960x540", "certified"),
     ] {
-        spherule()
-            .args(["render", scene, "--device", "cpu", "--size", size, "-o"])
-            .arg(dir.path().join("out.png"))
+        render(scene, size, &dir.path().join("out.png"))
             .assert()
             .success()
             .stderr(
@@ -635,9 +619,9 @@ fn auto_precision_says_what_it_took_and_why() {
     }
 }
 
-/// Where no rung is within the tolerance, the image is made all the same, and a warning says so.
+/// If no rung is within the tolerance, the image is rendered and a warning says so.
 #[test]
-fn a_tolerance_that_no_precision_meets_is_said() {
+fn a_warning_says_that_no_precision_meets_the_tolerance() {
     let dir = temporary();
     let render = |tolerance: &str, more: &[&str]| {
         let mut command = spherule();
@@ -665,21 +649,11 @@ fn a_tolerance_that_no_precision_meets_is_said() {
     render("1e-9", &["-q"]).stderr("");
 }
 
-/// One line before the work, one after it.
+/// Prints one line before the work and one after it.
 #[test]
 fn render_says_what_renders_and_what_was_written() {
     let dir = temporary();
-    let output = spherule()
-        .args([
-            "render",
-            "scenes/c60.xyz",
-            "--device",
-            "cpu",
-            "--size",
-            "16x9",
-            "-o",
-        ])
-        .arg(dir.path().join("out.png"))
+    let output = render("scenes/c60.xyz", "16x9", &dir.path().join("out.png"))
         .assert()
         .success();
     let stderr = String::from_utf8_lossy(&output.get_output().stderr).into_owned();
@@ -691,7 +665,7 @@ fn render_says_what_renders_and_what_was_written() {
     assert!(lines[1].starts_with("wrote "), "{stderr}");
 }
 
-/// What happens, step by step; and a wish that is not understood is not kept silent about.
+/// The log says each step, and a filter that is not understood is reported.
 #[test]
 fn the_log_says_what_happens() {
     let dir = temporary();
@@ -761,8 +735,7 @@ fn explain_says_what_calls_for_each_effect_and_what_it_costs() {
         .args(size)
         .assert()
         .success();
-    let report: serde_json::Value =
-        serde_json::from_slice(&output.get_output().stdout).expect("JSON");
+    let report = printed_json(&output);
     let effects = report["effects"].as_array().expect("effects");
     assert_eq!(effects.len(), 17);
     let called = effects.iter().filter(|effect| effect["by"].is_string());
@@ -777,11 +750,13 @@ fn explain_says_what_calls_for_each_effect_and_what_it_costs() {
     assert!(report["frame"]["all_effects"]["milliseconds"].as_f64() > Some(0.0));
 }
 
-/// A scene that takes too long is measured in a smaller image of the same shape, which is said.
+/// A scene that takes too long is measured in a smaller image of the same shape, and the output
+/// says so.
 #[test]
 fn measuring_keeps_to_its_time() {
     let scene = "scenes/glass-marble.toml";
-    // The limit is the whole command's. Much more than it would be forgotten samples, rounds or rows.
+    // The limit is for the whole command. A much longer time would mean that samples, rounds or
+    // rows were not counted.
     let started = Instant::now();
     let output = spherule()
         .args(["explain", scene, "--device", "cpu"])
@@ -789,8 +764,7 @@ fn measuring_keeps_to_its_time() {
         .assert()
         .success();
     assert!(started.elapsed() < Duration::from_secs(10), "{started:?}");
-    let report: serde_json::Value =
-        serde_json::from_slice(&output.get_output().stdout).expect("JSON");
+    let report = printed_json(&output);
     let size = |key: &str| report[key].as_u64().expect("a size");
     let (width, height) = (size("width"), size("height"));
     assert_eq!(report["whole_image"], serde_json::json!([960, 540]));
@@ -800,7 +774,7 @@ fn measuring_keeps_to_its_time() {
     );
     assert_eq!(report["whole_samples"], 512);
     assert!(report["frame"]["own"]["milliseconds"].as_f64() > Some(0.0));
-    // With no time at all one frame is measured, and the others are said to be missing.
+    // With no time at all, one frame is measured, and the output says that the others are missing.
     spherule()
         .args(["explain", scene, "--device", "cpu", "--time-limit", "1e-9"])
         .assert()
@@ -844,7 +818,7 @@ fn measuring_keeps_to_its_time() {
         .stderr(contains("--scene"));
 }
 
-/// In thick fog light paths are as long as they may be: a pixel takes milliseconds.
+/// A scene in thick fog, where light paths are as long as allowed: a pixel takes milliseconds.
 fn heavy(folder: &Path, width: u32, height: u32) -> std::path::PathBuf {
     let path = folder.join("heavy.toml");
     let text = format!(
@@ -856,7 +830,7 @@ fn heavy(folder: &Path, width: u32, height: u32) -> std::path::PathBuf {
     path
 }
 
-/// The first image that is measured has few pixels, also where the shorter side has few already.
+/// The first image that is measured has few pixels, even if the shorter side is short already.
 #[test]
 fn measuring_keeps_to_its_time_in_flat_images() {
     let dir = temporary();
@@ -871,7 +845,7 @@ fn measuring_keeps_to_its_time_in_flat_images() {
             .success()
             .stdout(contains("measured with"));
         let started = Instant::now();
-        // Whether there is time for a reference depends on the machine.
+        // It depends on the machine whether there is time for a reference.
         let output = spherule()
             .args(["accuracy", "--samples"])
             .arg(&scene)
@@ -887,7 +861,7 @@ fn measuring_keeps_to_its_time_in_flat_images() {
     }
 }
 
-/// The limit holds for the preview, too, and what was traced is counted.
+/// The limit includes the preview, and the traced pixels are counted.
 #[test]
 fn a_time_limit_holds_however_long_a_pixel_takes() {
     let dir = temporary();
@@ -905,16 +879,16 @@ fn a_time_limit_holds_however_long_a_pixel_takes() {
             .stderr(contains("% of the pixels (the time was up"));
         let took = started.elapsed().as_secs_f64();
         let limit: f64 = limit.parse().expect("a number");
-        // Before, 4096 pixels were traced in any case.
+        // The limit must hold within 4096 pixels, too.
         assert!(took < limit + 2.5, "{took} s");
-        let stats: serde_json::Value =
-            serde_json::from_slice(&output.get_output().stdout).expect("JSON");
+        let stats = printed_json(&output);
         assert_eq!(stats["rays"], stats["traced_pixels"]);
         assert!(limit < 1.0 || stats["rays"].as_u64() > Some(0), "{stats}");
     }
 }
 
-/// An image without samples is cut by a time limit as well; that the other options do nothing is said before the work.
+/// A time limit also cuts an image without samples. A message before the work says that the other
+/// options have no effect.
 #[test]
 fn a_time_limit_cuts_camera_rays() {
     let dir = temporary();
@@ -937,17 +911,16 @@ fn a_time_limit_cuts_camera_rays() {
     let output = render("0.05").success().stderr(contains(
         "% of the pixels (the time was up: the others are transparent)",
     ));
-    let stats: serde_json::Value =
-        serde_json::from_slice(&output.get_output().stdout).expect("JSON");
+    let stats = printed_json(&output);
     let rays = stats["rays"].as_u64().expect("a count");
     assert!(rays > 0 && rays < 4096 * 4096, "{stats}");
     assert_eq!(stats["traced_pixels"], rays);
     assert!(image::open(&out).expect("a PNG").color().has_alpha());
 }
 
-/// A name that is wrong, or more than the machine has room for, is known before anything is measured.
+/// A wrong name, or a scene or image too large for memory, is refused before anything is measured.
 #[test]
-fn bench_looks_at_everything_before_it_measures() {
+fn bench_checks_everything_before_it_measures() {
     let bench = |arguments: &[&str]| {
         let mut command = spherule();
         command
@@ -967,7 +940,7 @@ fn bench_looks_at_everything_before_it_measures() {
             .code(2)
             .stderr(contains(words).and(contains("give one of S2, S46")));
     }
-    // Where the system says how much memory it has.
+    // Linux says how much memory there is.
     if cfg!(target_os = "linux") {
         for too_much in [&["--size", "65536x65536"][..], &["--scene", "R1000M"]] {
             bench(too_much)
@@ -977,7 +950,7 @@ fn bench_looks_at_everything_before_it_measures() {
     }
 }
 
-/// A share of the limit for each kind of rays, unless it is not asked for.
+/// Prints a share of the limit for each kind of rays, except with `--no-limit`.
 #[test]
 fn bench_says_shares_of_the_limit() {
     let bench = |options: &[&str]| {
@@ -987,7 +960,7 @@ fn bench_says_shares_of_the_limit() {
             .args(options)
             .assert()
             .success();
-        serde_json::from_slice::<serde_json::Value>(&output.get_output().stdout).expect("JSON")
+        printed_json(&output)
     };
     let report = bench(&[]);
     assert!(report["limit"]["operations_per_s"].as_f64() > Some(1e8));
@@ -1028,8 +1001,7 @@ fn sampling_is_asked_for_and_reported() {
     let output = render(box_scene, &["--noise", "0.5", "--stats", "-"])
         .assert()
         .success();
-    let stats: serde_json::Value =
-        serde_json::from_slice(&output.get_output().stdout).expect("JSON");
+    let stats = printed_json(&output);
     assert_eq!(stats["sampling"]["stopped_by"], "noise");
     assert!(stats["sampling"]["noise"].as_f64() <= Some(0.5));
     assert!(stats["effects"].as_array().expect("effects").len() > 4);
@@ -1084,7 +1056,8 @@ fn accuracy_measures_scenes_and_samples() {
         .stderr(contains("calls for no effect"));
 }
 
-/// The picture does not depend on the instructions that it was traced with; those that are not there are refused.
+/// The image does not depend on the vector instructions that are used. Instructions that the
+/// machine does not have are refused.
 #[test]
 fn instructions_are_chosen_by_the_environment() {
     let dir = temporary();
@@ -1103,14 +1076,14 @@ fn instructions_are_chosen_by_the_environment() {
         .collect();
     for scene in ["scenes/1crn.pdb", "scenes/soft-light.toml"] {
         for precision in ["textbook", "robust", "compensated", "double", "certified"] {
-            let pictures: Vec<Vec<u8>> = there
+            let images: Vec<Vec<u8>> = there
                 .iter()
                 .map(|instructions| {
                     render(instructions.name(), scene, precision).success();
-                    std::fs::read(&output).expect("a picture")
+                    std::fs::read(&output).expect("an image")
                 })
                 .collect();
-            let are_equal = pictures.windows(2).all(|pair| pair[0] == pair[1]);
+            let are_equal = images.windows(2).all(|pair| pair[0] == pair[1]);
             assert!(are_equal, "{scene} on {precision}");
         }
     }

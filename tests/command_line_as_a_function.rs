@@ -1,12 +1,12 @@
-//! The command line is a safe function of the library too: a program that calls it has threads,
-//! an environment and a log of its own.
+//! The command line as a library function: the program that calls it has its own threads,
+//! environment and logger.
 
 use std::process::ExitCode;
 
-/// Called twice, beside a log that was set up before: neither panics, neither ends the process,
-/// and the environment, which other threads may read at any time, is left alone.
+/// It may be called several times, with a logger already set. It does not panic, does not end the
+/// process, and does not change the environment, which other threads may read at any time.
 #[test]
-fn it_may_be_called_beside_other_threads_and_again() {
+fn it_may_be_called_again_and_beside_other_threads() {
     struct Silent;
     impl log::Log for Silent {
         fn enabled(&self, _: &log::Metadata<'_>) -> bool {
@@ -15,7 +15,7 @@ fn it_may_be_called_beside_other_threads_and_again() {
         fn log(&self, _: &log::Record<'_>) {}
         fn flush(&self) {}
     }
-    log::set_logger(&Silent).expect("no log was set before");
+    log::set_logger(&Silent).expect("no logger was set before");
 
     let before: Vec<_> = std::env::vars_os().collect();
     for _ in 0..2 {
@@ -27,5 +27,5 @@ fn it_may_be_called_beside_other_threads_and_again() {
         assert_eq!(code, ExitCode::from(2));
     }
     let after: Vec<_> = std::env::vars_os().collect();
-    assert_eq!(before, after, "the environment is the caller's");
+    assert_eq!(before, after, "the environment must not change");
 }

@@ -1,12 +1,11 @@
-//! The effects, held against closed forms, against each other, and against the other processor.
+//! The effects, compared with closed forms, with each other, and between CPU and GPU.
 
 mod common;
 
 use std::path::Path;
 
-use common::{all_adapters, open, skips};
+use common::{all_adapters, device, open_with_limits, skips};
 use glam::Vec3;
-use spherule::device::GpuOptions;
 use spherule::film::compare::{Comparison, Tolerance};
 use spherule::kernel::color::luminance;
 use spherule::kernel::{Effects, Material, Rung, Sphere};
@@ -18,7 +17,7 @@ use spherule::scene::surroundings::{EnvironmentImage, PointLight, Sun, Surroundi
 use spherule::scene::{View, World};
 use spherule::{Device, Image, Scene};
 
-/// The scenes of the gallery, small.
+/// The scenes of the gallery.
 const GALLERY: [&str; 7] = [
     "one-weekend",
     "glass-marble",
@@ -60,7 +59,7 @@ fn mean(image: &Image) -> (f64, f64) {
     (mean, (variance / count).sqrt())
 }
 
-/// A sphere of this material alone, in surroundings of radiance one.
+/// A scene with one sphere of this material, in surroundings of radiance one.
 fn furnace(material: Material) -> Scene {
     let mut world = World::default();
     let id = world.add_material(material);
@@ -84,7 +83,8 @@ fn furnace(material: Material) -> Scene {
     scene
 }
 
-/// What reflects or transmits all light is not to be seen where light is the same from everywhere.
+/// A sphere that reflects or transmits all light is invisible if the light is the same from every
+/// direction.
 #[test]
 fn white_materials_vanish_in_a_furnace() {
     let mut materials = vec![
@@ -103,7 +103,7 @@ fn white_materials_vanish_in_a_furnace() {
     }
     for (name, material) in materials {
         let (mean, error) = mean(&on_cpu(&furnace(material)));
-        // The table of rough metal is linear between its entries, which is off by up to 0.003.
+        // The table for rough metal is interpolated linearly, which is off by up to 0.003.
         let bias = if name.starts_with("metal") {
             3e-3
         } else {
@@ -114,23 +114,23 @@ fn white_materials_vanish_in_a_furnace() {
             "{name}: {mean} ± {error}"
         );
     }
-    // The check can fail: what reflects nine tenths is seen.
+    // The check can fail: a sphere that reflects nine tenths is visible.
     let grey = Material::metal(Vec3::splat(0.9), 0.5);
     let (mean, error) = mean(&on_cpu(&furnace(grey)));
     assert!(mean < 0.97 && error < 0.01, "{mean} ± {error}");
 }
 
-/// A patch of white floor, under a sphere of light of this radius and height above it.
+/// A patch of white floor, with a spherical light of this radius at this height above it.
 fn floor_under_lamp(radius: f32, height: f32) -> Scene {
     let mut world = World::default();
     let white = world.add_material(Material::diffuse(Vec3::ONE));
     let lamp = world.add_material(Material::emissive(Vec3::ONE));
-    // A larger floor would be flatter, and paths would leave it from farther above.
+    // A larger sphere as the floor would be flatter, but paths would leave it from farther above.
     world.add(Sphere::new(Vec3::NEG_Y * 100.0, 100.0), white);
     world.add(Sphere::new(Vec3::Y * height, radius), lamp);
     let mut scene = Scene::new(world);
     (scene.width, scene.height) = (32, 32);
-    // From under the lamp, so that it does not hide the floor.
+    // The camera is under the lamp, so that the lamp does not hide the floor.
     scene.view = Some(View {
         eye: Vec3::new(0.02, 0.02, 0.0),
         target: Vec3::ZERO,
@@ -143,9 +143,9 @@ fn floor_under_lamp(radius: f32, height: f32) -> Scene {
     scene
 }
 
-/// E = π L (r / d)² for a sphere wholly above the horizon (J. R. Howell, A catalog of radiation heat
-/// transfer configuration factors, B-11), so that a white floor has the radiance (r / d)². Looking for
-/// the lamp, meeting it by chance, and both together give the same.
+/// E = π L (r / d)² for a sphere wholly above the horizon (J. R. Howell, A catalog of radiation
+/// heat transfer configuration factors, B-11), so that a white floor has the radiance (r / d)².
+/// Sampling the lamp, meeting it by chance, and both together give the same.
 #[test]
 fn a_spherical_light_gives_its_closed_form() {
     for (radius, height) in [(0.5, 2.0), (0.05, 3.0), (1.9, 2.0), (100.0, 350.0)] {
@@ -153,34 +153,35 @@ fn a_spherical_light_gives_its_closed_form() {
         let expected = f64::from(radius / height).powi(2);
         let both = EffectChoice::Auto;
         let by_chance = EffectChoice::Only(Effects::ALL.without(Effects::SOFT_SHADOWS));
-        let sought = EffectChoice::Only(Effects::ALL.without(Effects::INTERREFLECTION));
+        let sampled = EffectChoice::Only(Effects::ALL.without(Effects::INTERREFLECTION));
         let is_small = expected < 0.01;
-        for (name, effects) in [("both", both), ("chance", by_chance), ("sought", sought)] {
-            // Chance seldom meets a small lamp: more samples, and a wider interval.
+        for (name, effects) in [("both", both), ("chance", by_chance), ("sampled", sampled)] {
+            // Paths seldom meet a small lamp by chance: it takes more samples, and the smallest
+            // lamps are left out.
             scene.sampling.samples = Some(if name == "chance" { 4096 } else { 256 });
             if name == "chance" && is_small {
                 continue;
             }
             let settings = Settings {
                 effects,
-                // The floor's own curvature is what the lower rungs lose.
+                // The lower rungs lose the floor's curvature.
                 rung: Rung::Double,
                 ..Settings::default()
             };
             let (mean, error) = mean(&image(&scene, settings, &Device::Cpu));
-            // Paths that are continued leave the floor from a little above it, which brings the lamp
-            // nearer: 36 u (|C| + r), see `Surface::leave`.
+            // Continued paths leave the floor from a little above it, which brings the lamp nearer:
+            // by 36 u (|C| + r), see `Surface::leave`.
             let above = 36.0 * 2.0_f64.powi(-24) * 200.0 / f64::from(height);
             assert!(
                 (mean - expected).abs() <= 4.0 * error + (2.0 * above + 1e-4) * expected,
-                "radius {radius}, height {height}, {name}: {mean} ± {error}, must be {expected}"
+                "radius {radius}, height {height}, {name}: {mean} ± {error}, expected {expected}"
             );
         }
     }
 }
 
-/// What the sky gives by the gradient to an upward floor: the mean of the gradient over the cosine,
-/// horizon + (zenith − horizon)(½ + ⅓).
+/// A gradient sky gives an upward floor the cosine-weighted mean of the gradient, horizon +
+/// (zenith − horizon)(½ + ⅓).
 #[test]
 fn a_gradient_gives_its_closed_form() {
     let mut scene = floor_under_lamp(1e-3, 1e3);
@@ -202,7 +203,7 @@ fn a_gradient_gives_its_closed_form() {
     );
 }
 
-/// A white floor, seen from above, and nothing that shines.
+/// A white floor, seen from above, without a light.
 fn floor() -> Scene {
     let mut scene = floor_under_lamp(1e-3, 1e3);
     scene.world.spheres.truncate(1);
@@ -210,8 +211,8 @@ fn floor() -> Scene {
     scene
 }
 
-/// A sun of irradiance E at the angle θ from the zenith gives E cos θ, a point of intensity I at the
-/// distance d gives I cos θ / d²; both with and without extent.
+/// A sun of irradiance E at the angle θ from the zenith gives E cos θ, a point of intensity I at
+/// the distance d gives I cos θ / d²; both for lights with and without extent.
 #[test]
 fn suns_and_points_give_their_closed_forms() {
     let direction = Vec3::new(0.3, 0.8, -0.5).normalize();
@@ -286,12 +287,12 @@ fn an_environment_gives_its_closed_form() {
     }
 }
 
-/// An image of the surroundings is read from a file, and shows where it says.
+/// An environment image is read from a file, and each texel is seen in its direction.
 #[test]
-fn an_environment_is_read_and_seen_where_it_is() {
+fn an_environment_is_read_and_seen_in_the_right_directions() {
     let directory = tempfile::tempdir().expect("a directory");
     let mut pixels = image::Rgb32FImage::from_pixel(8, 4, image::Rgb([0.25, 0.25, 0.25]));
-    // In the middle, just below the horizon: −z. And right of it: +x.
+    // The image's middle, just below the horizon, is −z. To the right of it is +x.
     pixels.put_pixel(4, 2, image::Rgb([4.0, 0.0, 0.0]));
     pixels.put_pixel(6, 2, image::Rgb([0.0, 4.0, 0.0]));
     let path = directory.path().join("sky.exr");
@@ -326,13 +327,14 @@ fn an_environment_is_read_and_seen_where_it_is() {
     );
 }
 
-/// A glowing sphere that crosses the view covers a pixel for the share of the time that it takes.
+/// A glowing sphere that crosses the view covers a pixel for a share of the time.
 #[test]
 fn motion_blur_is_the_share_of_the_time() {
     let mut scene = furnace(Material::emissive(Vec3::ONE));
     scene.sky = None;
     scene.background = Vec3::ZERO;
-    // From −4 to 4 while the shutter is open; the middle is covered while it is within ±1.
+    // The sphere moves from −4 to 4 while the shutter is open. It covers the middle while it is
+    // within ±1.
     scene.world.spheres.clear();
     scene.world.material_ids.clear();
     scene
@@ -350,7 +352,7 @@ fn motion_blur_is_the_share_of_the_time() {
     assert!((middle - 0.25).abs() < 0.005, "{middle}");
 }
 
-/// What is in focus stays sharp, what is not spreads over its circle of confusion.
+/// A sphere in focus stays sharp; a sphere out of focus is spread over its circle of confusion.
 #[test]
 fn a_lens_blurs_what_is_out_of_focus() {
     let mut scene = furnace(Material::emissive(Vec3::ONE));
@@ -370,8 +372,8 @@ fn a_lens_blurs_what_is_out_of_focus() {
         f64::from(on_cpu(&scene).pixels()[0].color().x)
     };
     assert_eq!(seen(5.0), 1.0);
-    // At twice the distance of the ball the lens sees it through the share of its area that the
-    // ball's cone, widened by two, covers: (0.01 · 2)² of 0.5².
+    // With the focus at twice the ball's distance, the ball is seen through a share of the lens's
+    // area: that of the ball's cone, twice as wide, which is (0.01 · 2)² of 0.5².
     let expected = (0.02_f64 / 0.5).powi(2);
     assert!(
         (seen(10.0) - expected).abs() < 0.2 * expected,
@@ -380,8 +382,8 @@ fn a_lens_blurs_what_is_out_of_focus() {
     );
 }
 
-/// Light absorbed on the way through the middle of a glass ball: e^(−σ 2r), less what the two
-/// boundaries reflect, T² / (1 − R² e^(−2σ 2r)) of it with all that is reflected inside.
+/// A glass ball lets a share e^(−σ 2r) of the light through its middle, times what its two
+/// boundaries let through: T² / (1 − R² e^(−2σ 2r)), counting all reflections inside.
 #[test]
 fn absorption_follows_beers_law() {
     let sigma = 0.7;
@@ -429,7 +431,7 @@ fn absorbing_fog_follows_beers_law() {
     );
 }
 
-/// White fog in a furnace is not to be seen either, whichever way it scatters.
+/// White fog in a furnace is invisible, too, whatever its anisotropy.
 #[test]
 fn white_fog_vanishes_in_a_furnace() {
     for anisotropy in [-0.6, 0.0, 0.8] {
@@ -451,7 +453,7 @@ fn white_fog_vanishes_in_a_furnace() {
     }
 }
 
-/// The root mean square error against an image of many samples falls at least as 1 / √N.
+/// The root mean square error against an image of many samples falls at least as fast as 1 / √N.
 #[test]
 fn the_error_falls_with_the_samples() {
     for name in ["soft-light", "one-weekend"] {
@@ -469,7 +471,7 @@ fn the_error_falls_with_the_samples() {
             (sum / found.pixels().len() as f64).sqrt()
         };
         let (few, many) = (error(8), error(128));
-        // √16 = 4, less what the reference's own noise takes.
+        // √16 = 4, minus what the reference's own noise takes away.
         assert!(
             few > 3.0 * many,
             "{name}: {few} with 8 samples, {many} with 128"
@@ -477,7 +479,7 @@ fn the_error_falls_with_the_samples() {
     }
 }
 
-/// A pipeline of every effect draws what the pipeline of the scene's own draws, bit for bit.
+/// A pipeline with every effect renders the same bits as a pipeline with only the scene's effects.
 #[test]
 fn effects_that_are_not_called_for_change_nothing() {
     for name in GALLERY {
@@ -489,7 +491,7 @@ fn effects_that_are_not_called_for_change_nothing() {
         let own = image(&scene, with(EffectChoice::Auto), &Device::Cpu);
         let all = image(&scene, with(EffectChoice::All), &Device::Cpu);
         assert!(own.pixels() == all.pixels(), "{name}");
-        // An effect that is left out does change it.
+        // The check can fail: leaving out an effect that is called for changes the image.
         let fewer = scene
             .effects()
             .without(Effects::INTERREFLECTION.and(Effects::AMBIENT_OCCLUSION));
@@ -498,7 +500,8 @@ fn effects_that_are_not_called_for_change_nothing() {
     }
 }
 
-/// A scene that calls for nothing is drawn by one ray a pixel, whatever the pipeline is asked to hold.
+/// A scene that calls for no effect is rendered with one ray a pixel, whatever effects are asked
+/// for.
 #[test]
 fn a_plain_scene_stays_plain() {
     let mut scene = Scene::load("scenes/two-spheres.toml").expect("a scene");
@@ -514,15 +517,15 @@ fn a_plain_scene_stays_plain() {
             .iter()
             .any(|pixel| pixel.color().max_element() > 0.1)
     );
-    // Its light is developed as any other.
+    // Exposure applies to it as to any other image.
     scene.develop.exposure = -3.0;
     assert_ne!(own.to_rgb8(), on_cpu(&scene).to_rgb8());
 }
 
-/// Where effects are left out, what is left is finite: smooth metal without mirrors, spheres that would
-/// move without motion blur.
+/// If effects are left out, the image stays finite: smooth metal without mirrors, moving spheres
+/// without motion blur.
 #[test]
-fn effects_that_are_left_out_leave_no_holes() {
+fn images_without_some_effects_are_finite() {
     for name in GALLERY {
         let scene = gallery(name, 32, 20, 4);
         for (effect, _) in Effects::NAMED {
@@ -539,9 +542,9 @@ fn effects_that_are_left_out_leave_no_holes() {
     }
 }
 
-/// The ambient light is the sky's, once: a white floor in it has its radiance.
+/// Ambient light comes from the sky, counted once: a white floor has the sky's radiance.
 #[test]
-fn ambient_light_is_the_skys() {
+fn ambient_light_comes_from_the_sky() {
     let uniform = |light: f32, image| Surroundings {
         horizon: Vec3::splat(light),
         zenith: Vec3::splat(light),
@@ -569,11 +572,11 @@ fn ambient_light_is_the_skys() {
     }
 }
 
-/// CPU and GPU take the same decisions: the same seed is the same image, but for paths that a
-/// rounding sends elsewhere.
+/// CPU and GPU decide alike: the same seed gives the same image, except for paths that a rounding
+/// sends elsewhere.
 #[test]
-fn gpus_draw_what_the_cpu_draws() {
-    if skips("gpus_draw_what_the_cpu_draws") {
+fn gpus_render_what_the_cpu_renders() {
+    if skips("gpus_render_what_the_cpu_renders") {
         return;
     }
     for name in GALLERY {
@@ -581,13 +584,13 @@ fn gpus_draw_what_the_cpu_draws() {
         let cpu = on_cpu(&scene);
         let mut other = scene.clone();
         other.sampling.seed += 1;
-        // Of 2560 pixels 0.1 % are two; a path may go elsewhere in some more.
+        // 0.1 % of 2560 pixels are two; a path may go elsewhere in a few more.
         let tolerance = Tolerance {
             channel: 2.0,
             share: 0.01,
         };
         for adapter in all_adapters() {
-            let device = Device::Gpu(Box::new(open(adapter, GpuOptions::default())));
+            let device = device(adapter);
             for effects in [EffectChoice::Auto, EffectChoice::All] {
                 let settings = Settings {
                     effects,
@@ -599,7 +602,7 @@ fn gpus_draw_what_the_cpu_draws() {
                     "{name}: {compared:?}"
                 );
             }
-            // The check can fail: another seed is another image.
+            // The check can fail: another seed gives another image.
             let seeded = image(&other, Settings::default(), &device);
             let compared = Comparison::of(&seeded, &cpu, tolerance).expect("comparable");
             assert!(!compared.is_within(), "{name}: {compared:?}");
@@ -607,8 +610,8 @@ fn gpus_draw_what_the_cpu_draws() {
     }
 }
 
-/// The same seed is the same image, byte for byte, however many threads there are and however the
-/// image is cut into tiles and the samples into launches.
+/// The same seed gives the same image, byte for byte, whatever the number of threads, the tiles of
+/// the image and the launches of the samples.
 #[test]
 fn images_do_not_depend_on_how_the_work_is_cut() {
     let scene = gallery("glass-marble", 96, 54, 24);
@@ -621,17 +624,12 @@ fn images_do_not_depend_on_how_the_work_is_cut() {
         return;
     }
     for adapter in all_adapters() {
-        // Accumulators of 700 pixels fit one binding: tiles of seven rows.
+        // A binding holds the accumulators of 700 pixels, so tiles have seven rows.
         let mut limits = adapter.limits();
         limits.max_storage_buffer_binding_size = 32 * 700;
-        let cut = GpuOptions {
-            limits: Some(limits),
-            ..GpuOptions::default()
-        };
-        let [cut, whole] = [cut, GpuOptions::default()].map(|options| {
-            let device = Device::Gpu(Box::new(open(adapter, options)));
-            image(&scene, Settings::default(), &device)
-        });
+        let cut = Device::Gpu(Box::new(open_with_limits(adapter, limits)));
+        let [cut, whole] =
+            [cut, device(adapter)].map(|device| image(&scene, Settings::default(), &device));
         assert!(
             cut.pixels() == whole.pixels(),
             "{}",
@@ -640,7 +638,8 @@ fn images_do_not_depend_on_how_the_work_is_cut() {
     }
 }
 
-/// A small image takes many samples in one launch, whose loops a software adapter leaves after 65,535 turns.
+/// A small image takes many samples in one launch. A software adapter leaves a kernel's loop after
+/// 65,535 iterations.
 #[test]
 fn small_images_have_all_of_their_samples() {
     if skips("small_images_have_all_of_their_samples") {
@@ -648,7 +647,7 @@ fn small_images_have_all_of_their_samples() {
     }
     let scene = gallery("one-weekend", 11, 6, 4096);
     for adapter in all_adapters() {
-        let device = Device::Gpu(Box::new(open(adapter, GpuOptions::default())));
+        let device = device(adapter);
         let rendered = render(&scene, Settings::default(), &device, QUIET).expect("an image");
         assert_eq!(rendered.rays, 66 * 4096);
     }
@@ -688,11 +687,11 @@ fn a_time_limit_ends_a_render() {
 fn what_is_done_before_the_tracing_is_timed_on_the_cpu_too() {
     let scene = gallery("soft-light", 48, 32, 1);
     let rendered = render(&scene, Settings::default(), &Device::Cpu, QUIET).expect("an image");
-    // A tree over 327 atoms.
+    // It builds a tree over 327 atoms.
     assert!(rendered.timings.setup > std::time::Duration::ZERO);
 }
 
-/// Effects are called for by what the scene says, and by nothing else.
+/// A scene calls for the effects that its keys need, and for no others.
 #[test]
 fn each_effect_is_called_for_by_its_key() {
     let base = "[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\n";
@@ -799,9 +798,9 @@ fn each_effect_is_called_for_by_its_key() {
     }
 }
 
-/// Curves are monotonic and keep black black, and exposure doubles light stop by stop.
+/// Tone curves are monotonic and keep black black. Each stop of exposure doubles the light.
 #[test]
-fn light_is_developed() {
+fn exposure_and_tone_curves_are_applied() {
     let pixel = |light: f32| spherule::kernel::Pixel::new(Vec3::splat(light), 1.0);
     let shown = |tonemap, exposure, light: f32| {
         let mut image =
@@ -825,8 +824,8 @@ fn light_is_developed() {
     assert_eq!(shown(Tonemap::Clamp, 0.0, 4.0), 255);
 }
 
-/// Where the background is transparent, pixels without a sphere let everything through, and the
-/// colours of edges are not mixed with it.
+/// With a transparent background, pixels without a sphere have no opacity, and the colours of edges
+/// are not mixed with the background.
 #[test]
 fn a_transparent_background_has_no_opacity() {
     let mut scene = Scene::load("scenes/c60.xyz").expect("a molecule");

@@ -1,13 +1,13 @@
-//! Every GPU error, provoked for real: forced limits, corrupt modules, a destroyed device, a
-//! deadline that cannot be met, and wgpu's noop backend, which checks calls and runs nothing.
+//! Provokes every GPU error: by forced limits, corrupt modules, a destroyed device, a deadline that
+//! cannot be met, and wgpu's noop backend, which checks calls and runs nothing.
 
 mod common;
 
 use std::time::Duration;
 
-use common::{all_adapters, gpus, noop_adapter, open, skips};
+use common::{all_adapters, gpus, noop_adapter, open, open_with_limits, skips};
 use spherule::accel::Acceleration;
-use spherule::device::{Access, Device, DeviceChoice, Gpu, GpuOptions, Module};
+use spherule::device::{Access, Device, DeviceChoice, Gpu, GpuOptions, Kernel, Module};
 use spherule::kernel::{Hit, Ray, Rung, Shading, Sphere, spirv};
 use spherule::render::{QUIET, Settings, paths, render};
 use spherule::trace::GpuTracer;
@@ -20,7 +20,35 @@ fn noop() -> Gpu {
     )
 }
 
-/// The message must name what and where, and the help must not be empty.
+/// The kernel's module without 64-bit floats.
+fn kernel_f32() -> Module {
+    kernel_module::f32().expect("the kernel")
+}
+
+/// The accesses of the entry point `trace_rays`.
+const TRACE_RAYS: [Access; 3] = [Access::Read, Access::Read, Access::ReadWrite];
+
+fn trace_rays(gpu: &Gpu) -> Kernel {
+    gpu.kernel(&kernel_f32(), "trace_rays", &TRACE_RAYS)
+        .expect("a kernel")
+}
+
+fn with_timeout(adapter: &wgpu::Adapter, timeout: Duration) -> Gpu {
+    let options = GpuOptions {
+        timeout,
+        ..GpuOptions::default()
+    };
+    open(adapter, options)
+}
+
+/// Checks the variant of an error.
+macro_rules! assert_is {
+    ($error:ident, $variant:pat) => {
+        assert!(matches!($error, $variant), "{:?}", $error)
+    };
+}
+
+/// Checks that the message is one line with all of these words, and that there is a help text.
 #[track_caller]
 fn assert_says(error: &Error, words: &[&str]) {
     let message = error.to_string();
@@ -34,8 +62,8 @@ fn assert_says(error: &Error, words: &[&str]) {
 #[test]
 fn no_adapter() {
     let choice = DeviceChoice::Named("no such adapter".into());
-    let error = Device::open(&choice).expect_err("there is none of that name");
-    // It is the name that is wrong, where there are adapters of other names.
+    let error = Device::open(&choice).expect_err("no adapter has this name");
+    // If there are other adapters, the name is wrong.
     let there_are_others = !all_adapters().is_empty();
     assert_eq!(
         matches!(error, Error::NoSuchAdapter { .. }),
@@ -66,8 +94,8 @@ fn device_refused() {
     };
     for adapter in all_adapters() {
         let error =
-            Gpu::from_adapter(adapter, options.clone()).expect_err("too much was asked for");
-        assert!(matches!(error, Error::DeviceRefused { .. }), "{error:?}");
+            Gpu::from_adapter(adapter, options.clone()).expect_err("the limits are too high");
+        assert_is!(error, Error::DeviceRefused { .. });
         assert_says(&error, &["max_compute_invocations_per_workgroup"]);
     }
 }
@@ -92,7 +120,7 @@ fn kernel_invalid_by_structure() {
     ];
     for (bytes, word) in cases {
         let error = Module::from_bytes("corrupt", bytes).expect_err(word);
-        assert!(matches!(error, Error::KernelInvalid { .. }), "{error:?}");
+        assert_is!(error, Error::KernelInvalid { .. });
         assert_says(&error, &["corrupt", word]);
     }
     let error = kernel_module::f32()
@@ -102,22 +130,20 @@ fn kernel_invalid_by_structure() {
 }
 
 #[test]
-fn modules_of_the_other_byte_order_are_read() {
+fn modules_in_the_other_byte_order_are_read() {
     let swapped: Vec<u8> = spirv::F32
         .chunks_exact(4)
         .flat_map(|word| [word[3], word[2], word[1], word[0]])
         .collect();
     let module = Module::from_bytes("swapped", &swapped).expect("a module");
-    assert_eq!(
-        module.words(),
-        kernel_module::f32().expect("the kernel").words()
-    );
+    assert_eq!(module.words(), kernel_f32().words());
 }
 
 #[test]
 fn kernel_invalid_by_content() {
-    // Structurally sound, and nonsense: every access chain points at a result that is not there.
-    let mut words = kernel_module::f32().expect("the kernel").words().to_vec();
+    // The structure is sound and the content is not: every access chain refers to an id that does
+    // not exist.
+    let mut words = kernel_f32().words().to_vec();
     const ACCESS_CHAIN: u32 = 65;
     let mut at = 5;
     while at < words.len() {
@@ -129,25 +155,22 @@ fn kernel_invalid_by_content() {
     let module = Module::from_bytes("nonsense", bytemuck::cast_slice(&words))
         .expect("the structure is sound");
     let error = noop()
-        .kernel(
-            &module,
-            "trace_rays",
-            &[Access::Read, Access::Read, Access::ReadWrite],
-        )
-        .expect_err("it is nonsense");
-    assert!(matches!(error, Error::KernelInvalid { .. }), "{error:?}");
+        .kernel(&module, "trace_rays", &TRACE_RAYS)
+        .expect_err("the module is invalid");
+    assert_is!(error, Error::KernelInvalid { .. });
     assert_says(&error, &["nonsense/trace_rays"]);
 }
 
 #[test]
 fn kernel_invalid_by_name_or_need() {
-    let module = kernel_module::f32().expect("the kernel");
+    let module = kernel_f32();
     let error = noop()
         .kernel(&module, "no_such_entry", &[])
-        .expect_err("there is none");
+        .expect_err("there is no such entry point");
     assert_says(&error, &["no_such_entry", "trace_rays"]);
 
-    // The capability Float64, declared after the first instruction, on a device without it.
+    // The module declares the capability Float64, after its first instruction, and the device does
+    // not have it.
     let mut words = module.words().to_vec();
     let second = 5 + (words[5] >> 16) as usize;
     words.splice(second..second, [(2 << 16) | 17, 10]);
@@ -156,7 +179,7 @@ fn kernel_invalid_by_name_or_need() {
     let error = noop()
         .kernel(&module, "trace_rays", &[])
         .expect_err("the device has no f64");
-    assert!(matches!(error, Error::KernelInvalid { .. }), "{error:?}");
+    assert_is!(error, Error::KernelInvalid { .. });
     assert_says(&error, &["64-bit floats"]);
 }
 
@@ -170,27 +193,18 @@ fn buffer_too_large() {
             max_storage_buffer_binding_size: 1 << 16,
             ..adapter.limits()
         };
-        let gpu = open(
-            adapter,
-            GpuOptions {
-                limits: Some(limits),
-                ..GpuOptions::default()
-            },
-        );
+        let gpu = open_with_limits(adapter, limits);
         let spheres = vec![Sphere::default(); (1 << 12) + 1];
         let error = gpu
             .upload("spheres", &spheres)
             .expect_err("one sphere too many");
-        assert!(
-            matches!(
-                error,
-                Error::BufferTooLarge {
-                    needed: 65_552,
-                    limit: 65_536,
-                    ..
-                }
-            ),
-            "{error:?}"
+        assert_is!(
+            error,
+            Error::BufferTooLarge {
+                needed: 65_552,
+                limit: 65_536,
+                ..
+            }
         );
         assert_says(&error, &["spheres", "65552", "65536"]);
         assert!(gpu.upload("spheres", &spheres[1..]).is_ok());
@@ -202,10 +216,10 @@ fn out_of_memory() {
     let gpu = noop();
     let error = gpu
         .zeroed::<u8>("the universe", 1 << 60)
-        .expect_err("no machine has that much");
-    assert!(matches!(error, Error::OutOfMemory { .. }), "{error:?}");
+        .expect_err("no machine has that much memory");
+    assert_is!(error, Error::OutOfMemory { .. });
     assert_says(&error, &["the universe", "1152921504606846976 bytes"]);
-    // The device lives on.
+    // The device still works.
     assert!(gpu.zeroed::<u32>("a little", 4).is_ok());
 }
 
@@ -215,45 +229,32 @@ fn launch_limits() {
     if skips("launch_limits") {
         return;
     }
-    let module = kernel_module::f32().expect("the kernel");
-    let bindings = [Access::Read, Access::Read, Access::ReadWrite];
     for adapter in all_adapters() {
         let limits = wgpu::Limits {
             max_compute_invocations_per_workgroup: 32,
             max_compute_workgroups_per_dimension: 1000,
             ..adapter.limits()
         };
-        let gpu = open(
-            adapter,
-            GpuOptions {
-                limits: Some(limits),
-                ..GpuOptions::default()
-            },
-        );
+        let gpu = open_with_limits(adapter, limits);
         let error = gpu
-            .kernel(&module, "trace_rays", &bindings)
+            .kernel(&kernel_f32(), "trace_rays", &TRACE_RAYS)
             .expect_err("64 threads do not fit 32");
-        assert!(
-            matches!(
-                error,
-                Error::LaunchLimits {
-                    asked: 64,
-                    limit: 32,
-                    ..
-                }
-            ),
-            "{error:?}"
+        assert_is!(
+            error,
+            Error::LaunchLimits {
+                asked: 64,
+                limit: 32,
+                ..
+            }
         );
         assert_says(&error, &["trace_rays", "threads in a workgroup"]);
     }
     for gpu in gpus() {
-        let kernel = gpu
-            .kernel(&module, "trace_rays", &bindings)
-            .expect("a kernel");
+        let kernel = trace_rays(gpu);
         let error = gpu
             .launch(&kernel, &[], [u32::MAX, 1, 1])
-            .expect_err("no device counts that far");
-        assert!(matches!(error, Error::LaunchLimits { .. }), "{error:?}");
+            .expect_err("no device allows that many");
+        assert_is!(error, Error::LaunchLimits { .. });
         assert_says(&error, &["workgroups", "4294967295"]);
     }
 }
@@ -263,29 +264,22 @@ fn validation() {
     if skips("validation") {
         return;
     }
-    let module = kernel_module::f32().expect("the kernel");
     for gpu in gpus() {
-        let kernel = gpu
-            .kernel(
-                &module,
-                "trace_rays",
-                &[Access::Read, Access::Read, Access::ReadWrite],
-            )
-            .expect("a kernel");
+        let kernel = trace_rays(gpu);
         let rays = gpu.upload("rays", &[Ray::default()]).expect("rays");
         let error = gpu
             .launch(&kernel, &[rays.binding()], [1, 1, 1])
             .expect_err("two buffers are missing");
-        assert!(matches!(error, Error::Validation { .. }), "{error:?}");
+        assert_is!(error, Error::Validation { .. });
         assert_says(&error, &["trace_rays"]);
-        // The device lives on, and takes the launch once it is right.
+        // The device still works, and accepts the launch when all buffers are bound.
         let spheres = gpu
             .upload("spheres", &[Sphere::default()])
             .expect("spheres");
         let hits = gpu.zeroed::<Hit>("hits", 1).expect("hits");
         let bindings = [rays.binding(), spheres.binding(), hits.binding()];
         gpu.launch(&kernel, &bindings, [1, 1, 1])
-            .expect("all is there");
+            .expect("all buffers are bound");
         assert_eq!(gpu.read(&hits).expect("hits"), [Hit::NONE]);
     }
 }
@@ -301,15 +295,16 @@ fn device_lost() {
         let rays = gpu.upload("rays", &[Ray::default()]).expect("rays");
         gpu.destroy();
         for error in [
-            gpu.read(&rays).expect_err("it is gone"),
-            gpu.upload("more", &[1_u32]).expect_err("it is gone"),
+            gpu.read(&rays).expect_err("the device is lost"),
+            gpu.upload("more", &[1_u32])
+                .expect_err("the device is lost"),
         ] {
-            assert!(matches!(error, Error::DeviceLost { .. }), "{error:?}");
+            assert_is!(error, Error::DeviceLost { .. });
             assert_says(&error, &[gpu.name(), "destroyed"]);
         }
         let error = render(&scene, Shading::Flat, &Device::Gpu(Box::new(gpu)), QUIET)
-            .expect_err("it is gone");
-        assert!(matches!(error, Error::DeviceLost { .. }), "{error:?}");
+            .expect_err("the device is lost");
+        assert_is!(error, Error::DeviceLost { .. });
     }
 }
 
@@ -318,23 +313,10 @@ fn timeout() {
     if skips("timeout") {
         return;
     }
-    let module = kernel_module::f32().expect("the kernel");
     for adapter in all_adapters() {
-        let gpu = open(
-            adapter,
-            GpuOptions {
-                timeout: Duration::from_nanos(1),
-                ..GpuOptions::default()
-            },
-        );
-        let kernel = gpu
-            .kernel(
-                &module,
-                "trace_rays",
-                &[Access::Read, Access::Read, Access::ReadWrite],
-            )
-            .expect("a kernel");
-        // Milliseconds of work on a fast GPU, and not a minute of it on a software one.
+        let gpu = with_timeout(adapter, Duration::from_nanos(1));
+        let kernel = trace_rays(&gpu);
+        // Milliseconds of work on a fast GPU, and less than a minute on a software one.
         let is_software = adapter.get_info().device_type == wgpu::DeviceType::Cpu;
         let count = if is_software { 1 << 10 } else { 1 << 16 };
         let ray = Ray::new(glam::Vec3::ZERO, glam::Vec3::X);
@@ -349,27 +331,28 @@ fn timeout() {
                 &[rays.binding(), spheres.binding(), hits.binding()],
                 [1 << 10, 1, 1],
             )
-            .expect_err("no device is done in a nanosecond");
-        assert!(matches!(error, Error::Timeout { .. }), "{error:?}");
+            .expect_err("no device finishes in a nanosecond");
+        assert_is!(error, Error::Timeout { .. });
         assert_says(&error, &["trace_rays", gpu.name()]);
     }
 }
 
-/// A kernel whose threads write nothing, as after a panic on the device: noop runs none.
+/// Pixels that no thread wrote, as after a panic on the device: noop runs no threads.
 #[test]
 fn readback() {
     let mut scene = Scene::load("scenes/two-spheres.toml").expect("the scene");
     (scene.width, scene.height) = (16, 9);
     let error = render(&scene, Shading::Flat, &Device::Gpu(Box::new(noop())), QUIET)
         .expect_err("nothing was written");
-    assert!(matches!(error, Error::Readback { .. }), "{error:?}");
+    assert_is!(error, Error::Readback { .. });
     assert_says(&error, &["144 of 144 pixels"]);
 }
 
-/// What one device made another refuses, though wgpu numbers the buffers of two instances alike.
+/// A device refuses the buffers and kernels of another, although wgpu numbers the buffers of two
+/// instances alike.
 #[test]
-fn devices_are_told_apart() {
-    if skips("devices_are_told_apart") {
+fn objects_of_another_device_are_refused() {
+    if skips("objects_of_another_device_are_refused") {
         return;
     }
     let open = || Gpu::open(&DeviceChoice::Gpu).expect("a device");
@@ -377,7 +360,7 @@ fn devices_are_told_apart() {
     let of_one = one.upload("numbers of one", &[1_u32; 4]).expect("room");
     let of_other = other.upload("numbers", &[2_u32; 4]).expect("room");
     let uniform = one.upload_uniform("uniform of one", &1_u32).expect("room");
-    let module = kernel_module::f32().expect("the kernel");
+    let module = kernel_f32();
     let access = [Access::Read, Access::ReadWrite];
     let kernel = one
         .kernel(&module, "measure_copying", &access)
@@ -397,16 +380,17 @@ fn devices_are_told_apart() {
             .launch(&again, &[of_one.binding(), of_other.binding()], [1, 1, 1])
             .expect_err("of another"),
     ] {
-        assert!(matches!(error, Error::Validation { .. }), "{error:?}");
+        assert_is!(error, Error::Validation { .. });
         assert_says(&error, &["another device"]);
     }
     assert_eq!(other.read(&of_other).expect("numbers"), [2; 4]);
 }
 
-/// What the driver takes unseen is held against what is said of its buffers.
+/// The accesses that a caller declares are compared with those in the module, because the driver
+/// does not check them.
 #[test]
 fn accesses_are_those_of_the_module() {
-    let module = kernel_module::f32().expect("the kernel");
+    let module = kernel_f32();
     let gpu = noop();
     let (read, write) = (Access::Read, Access::ReadWrite);
     for (entry, said) in [
@@ -416,8 +400,10 @@ fn accesses_are_those_of_the_module() {
         ("trace_rays", &[read, read, read]),
         ("trace_rays", &[read, write, write]),
     ] {
-        let error = gpu.kernel(&module, entry, said).expect_err("not so");
-        assert!(matches!(error, Error::KernelInvalid { .. }), "{error:?}");
+        let error = gpu
+            .kernel(&module, entry, said)
+            .expect_err("the accesses differ");
+        assert_is!(error, Error::KernelInvalid { .. });
         assert_says(&error, &[entry, "binding"]);
     }
     for gpu in gpus() {
@@ -427,12 +413,12 @@ fn accesses_are_those_of_the_module() {
         let both = gpu.upload("both", &[[1.0_f32; 4]; 64]).expect("room");
         let error = gpu
             .launch(&kernel, &[both.binding(), both.binding()], [1, 1, 1])
-            .expect_err("read and written at once");
-        assert!(matches!(error, Error::Validation { .. }), "{error:?}");
+            .expect_err("one buffer is read and written");
+        assert_is!(error, Error::Validation { .. });
     }
 }
 
-/// An instruction of SPIR-V.
+/// The words of a SPIR-V instruction.
 fn instruction(opcode: u32, operands: &[u32]) -> Vec<u32> {
     let mut words = vec![(operands.len() as u32 + 1) << 16 | opcode];
     words.extend(operands);
@@ -441,12 +427,12 @@ fn instruction(opcode: u32, operands: &[u32]) -> Vec<u32> {
 
 fn module_of(name: &str, words: &[u32]) -> Module {
     let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
-    Module::from_bytes(name, &bytes).expect("a module by its structure")
+    Module::from_bytes(name, &bytes).expect("the structure is sound")
 }
 
-/// Kernels of anybody do not see what others left in the memory of workgroups.
+/// No kernel sees what another left in workgroup memory.
 #[test]
-fn workgroup_memory_begins_as_zeros() {
+fn workgroup_memory_is_zeroed() {
     let [peek, fill] = [b"peek", b"fill"].map(|name| u32::from_le_bytes(*name));
     let words = [
         vec![0x0723_0203, 0x0001_0300, 0, 100, 0],
@@ -456,7 +442,7 @@ fn workgroup_memory_begins_as_zeros() {
         instruction(15, &[5, 15, fill, 0]),
         instruction(16, &[14, 17, 1, 1, 1]),
         instruction(16, &[15, 17, 1, 1, 1]),
-        // Of the buffer: the stride, a block, its offset, set and binding.
+        // The buffer's decorations: stride, block, offset, set and binding.
         instruction(71, &[6, 6, 4]),
         instruction(71, &[7, 2]),
         instruction(72, &[7, 0, 35, 0]),
@@ -464,7 +450,7 @@ fn workgroup_memory_begins_as_zeros() {
         instruction(71, &[9, 33, 0]),
         instruction(19, &[2]),
         instruction(21, &[3, 32, 0]),
-        // The workgroup's word.
+        // The word in workgroup memory.
         instruction(32, &[4, 4, 3]),
         instruction(59, &[4, 5, 4]),
         instruction(29, &[6, 3]),
@@ -475,7 +461,7 @@ fn workgroup_memory_begins_as_zeros() {
         instruction(43, &[3, 11, 0]),
         instruction(43, &[3, 12, 0xdead_beef]),
         instruction(33, &[13, 2]),
-        // The word goes to the buffer.
+        // `peek` copies the word to the buffer.
         instruction(54, &[2, 14, 0, 13]),
         instruction(248, &[20]),
         instruction(61, &[3, 21, 5]),
@@ -483,7 +469,7 @@ fn workgroup_memory_begins_as_zeros() {
         instruction(62, &[22, 21]),
         instruction(253, &[]),
         instruction(56, &[]),
-        // The constant goes to both.
+        // `fill` writes the constant to both.
         instruction(54, &[2, 15, 0, 13]),
         instruction(248, &[30]),
         instruction(62, &[5, 12]),
@@ -542,7 +528,7 @@ fn a_module_that_naga_panics_on_is_invalid() {
     let module = module_of("switch", &words);
     for gpu in gpus() {
         let error = gpu.kernel(&module, "main", &[]).expect_err("naga panics");
-        assert!(matches!(error, Error::KernelInvalid { .. }), "{error:?}");
+        assert_is!(error, Error::KernelInvalid { .. });
         assert_says(&error, &["switch/main"]);
         assert_eq!(
             gpu.read(&gpu.upload("after", &[1_u32]).expect("room"))
@@ -556,27 +542,20 @@ fn a_module_that_naga_panics_on_is_invalid() {
 fn more_elements_than_can_be_counted_are_too_large() {
     for len in [usize::MAX, usize::MAX / 4 + 1, 1 << 62] {
         let error = noop().zeroed::<u32>("many", len).expect_err("too many");
-        assert!(matches!(error, Error::BufferTooLarge { .. }), "{error:?}");
+        assert_is!(error, Error::BufferTooLarge { .. });
     }
 }
 
-/// A launch that does not end in time leaves the device as it was: the next one runs once it has ended.
+/// After a launch that does not end in time, the device still works: the next launch runs when that
+/// one has ended.
 #[test]
 fn launches_go_on_after_a_timeout() {
     if skips("launches_go_on_after_a_timeout") {
         return;
     }
-    let module = kernel_module::f32().expect("the kernel");
     for adapter in all_adapters() {
-        let options = GpuOptions {
-            timeout: Duration::from_millis(20),
-            ..GpuOptions::default()
-        };
-        let gpu = open(adapter, options);
-        let access = [Access::Read, Access::Read, Access::ReadWrite];
-        let kernel = gpu
-            .kernel(&module, "trace_rays", &access)
-            .expect("a kernel");
+        let gpu = with_timeout(adapter, Duration::from_millis(20));
+        let kernel = trace_rays(&gpu);
         let ray = Ray::new(glam::Vec3::ZERO, glam::Vec3::X);
         let rays = gpu.upload("rays", &vec![ray; 1 << 16]).expect("rays");
         let hits = gpu.zeroed::<Hit>("hits", 1 << 16).expect("hits");
@@ -601,7 +580,7 @@ fn launches_go_on_after_a_timeout() {
                     last = None;
                     break;
                 }
-                // Still busy.
+                // The device is still busy.
                 Err(error @ Error::Timeout { .. }) => last = Some(error),
                 Err(error) => panic!("{error:?}"),
             }
@@ -610,9 +589,10 @@ fn launches_go_on_after_a_timeout() {
     }
 }
 
-/// A batch that another tracer traced names spheres that this one does not have: those are no hits.
+/// A batch of another tracer may name spheres that this tracer does not have. Those are not
+/// reported as hits.
 #[test]
-fn hits_of_another_tracers_batch_are_none() {
+fn hits_of_another_tracers_batch_are_dropped() {
     for gpu in gpus() {
         let row = |count: u32| -> Vec<Sphere> {
             (0..count)
@@ -630,9 +610,9 @@ fn hits_of_another_tracers_batch_are_none() {
     }
 }
 
-/// What a program changes of a launch of light paths is looked at before any is traced.
+/// The sizes of a launch, which a program may change, are checked before any light path is traced.
 #[test]
-fn light_paths_of_no_image_are_refused() {
+fn launches_outside_the_image_are_refused() {
     let mut scene = Scene::load("scenes/soft-light.toml").expect("a scene");
     (scene.width, scene.height) = (16, 9);
     let effects = spherule::render::EffectChoice::Auto;
@@ -660,8 +640,8 @@ fn light_paths_of_no_image_are_refused() {
             .iter()
             .map(|gpu| paths::gpu::render(gpu, &prepared, &settings, QUIET));
         for rendered in std::iter::once(on_cpu).chain(on_gpus) {
-            let error = rendered.err().expect("no image");
-            assert!(matches!(error, Error::Scene(_)), "{error:?}");
+            let error = rendered.err().expect("the sizes are wrong");
+            assert_is!(error, Error::Scene(_));
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Each device function, on every adapter of this machine and on the CPU, compared.
+//! Compares each device function on every adapter of this machine with the CPU.
 
 mod common;
 
@@ -16,11 +16,13 @@ const COUNT: usize = 10_000;
 
 /// How far apart two correct answers may be, for a hit at `t`.
 ///
-/// Vulkan lets a device divide and take square roots with a few units in the last place of error
-/// and fuse products with sums; 16 roundings cover each quantity below with room to spare. The
-/// discriminant D = b² − ac of the halved quadratic is a difference, so that it is off by
-/// 16 u S with S = b² + a·|O − C|², its root by 16 u S / 2√D, and t by that over a, plus the
-/// roundings of its own terms.
+/// Vulkan lets quotients and square roots be off by a few units in the last place, and products be
+/// fused with sums. 16 roundings more than cover each quantity below:
+///
+/// - The discriminant D = b² − ac of the halved quadratic is a difference, so it is off by 16 u S
+///   with S = b² + a·|O − C|².
+/// - Its root is off by 16 u S / 2√D.
+/// - t is off by that over a, plus the roundings of its own terms.
 fn allowed_difference(ray: &Ray, sphere: &Sphere) -> f32 {
     let oc = (ray.origin - sphere.center()).as_dvec3();
     let d = ray.direction.as_dvec3();
@@ -46,7 +48,8 @@ fn random_spheres(seed: u64, count: usize) -> Vec<Sphere> {
         .collect()
 }
 
-/// Whether the discriminant is so close to zero, for its terms, that rounding may decide it.
+/// Whether the discriminant is so close to zero, relative to its terms, that rounding may decide
+/// it.
 fn is_grazing(ray: &Ray, sphere: &Sphere) -> bool {
     let oc = (ray.origin - sphere.center()).as_dvec3();
     let d = ray.direction.as_dvec3();
@@ -54,11 +57,11 @@ fn is_grazing(ray: &Ray, sphere: &Sphere) -> bool {
     let (a, b) = (d.dot(d), oc.dot(d));
     let c = oc.dot(oc) - radius * radius;
     let discriminant = b * b - a * c;
-    // Sixteen roundings of the largest term.
+    // 16 roundings of the largest term.
     discriminant.abs() <= 16.0 * f64::from(f32::EPSILON) * (b * b).max(a * oc.dot(oc))
 }
 
-/// Whether the ray starts so close to the surface that rounding decides on which side.
+/// Whether the ray starts so close to the surface that rounding decides on which side it starts.
 fn starts_on_surface(ray: &Ray, sphere: &Sphere) -> bool {
     let distance = (ray.origin - sphere.center()).as_dvec3().length();
     (distance - f64::from(sphere.radius())).abs() < 1e-4
@@ -124,10 +127,7 @@ fn sphere_intersect_agrees() {
                 gpu.name()
             );
         }
-        assert!(
-            hits > COUNT / 10,
-            "{hits} hits are too few to tell anything"
-        );
+        assert!(hits > COUNT / 10, "only {hits} hits");
     }
 }
 
@@ -158,8 +158,7 @@ fn nearest_hit_agrees() {
                 assert_ne!(hit.t, -1.0, "a thread wrote nothing");
                 differing += usize::from(hit.sphere != nearest_hit(ray, &spheres).sphere);
             }
-            // Only a ray that grazes one of the spheres, or starts on one, may be decided
-            // differently.
+            // The result may differ only for a ray that grazes a sphere or starts on one.
             let excusable = rays
                 .iter()
                 .filter(|ray| {
@@ -319,7 +318,7 @@ fn camera_rays_agree() {
     }
 }
 
-/// The layout of every shared type as the GPU's compiler sees it is the host's.
+/// Every shared type has the same layout for the GPU's compiler as for the host's.
 #[test]
 fn layout_agrees() {
     if skips("layout_agrees") {
@@ -336,7 +335,7 @@ fn layout_agrees() {
     }
 }
 
-/// Rays with a sphere that each hits well inside its silhouette, and where.
+/// Rays, a sphere for each that it hits well inside the silhouette, and the parameters of the hits.
 fn hits() -> (Vec<Ray>, Vec<Sphere>, Vec<f32>) {
     let mut random = Random::new(5);
     let mut found = (Vec::new(), Vec::new(), Vec::new());

@@ -1,13 +1,12 @@
-//! The hard cases, by number, on every rung, on the CPU and on every adapter: no promise may be
-//! broken, and `certified` promises them all.
+//! The hard cases on every rung, on the CPU and on every adapter: no promise may be broken, and
+//! `certified` promises all of them.
 
 mod common;
 
-use common::{all_adapters, open, skips};
+use common::{all_adapters, device, skips};
 use spherule::Device;
 use spherule::accuracy::cases::{Verdict, catalogue};
 use spherule::accuracy::scene_cases::SCENE_CASES;
-use spherule::device::GpuOptions;
 use spherule::kernel::Rung;
 
 fn check(device: &Device) {
@@ -45,7 +44,7 @@ fn no_promise_is_broken_on_gpus() {
         return;
     }
     for adapter in all_adapters() {
-        check(&Device::Gpu(Box::new(open(adapter, GpuOptions::default()))));
+        check(&device(adapter));
     }
 }
 
@@ -57,7 +56,7 @@ fn the_catalogue_is_complete() {
     assert_eq!(numbers, (1..=42).collect::<Vec<u8>>());
 }
 
-/// The cases can fail: the textbook formula does on those that it is known for.
+/// The cases can fail: the textbook formula fails on those that it is known to fail on.
 #[test]
 fn the_textbook_formula_fails_where_it_is_known_to() {
     for case in catalogue() {

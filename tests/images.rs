@@ -1,12 +1,13 @@
-//! Rendered images: against committed references, against closed forms, on every path.
+//! Rendered images, compared with committed references and with closed forms, on the CPU and on
+//! every adapter.
 //!
-//! `SPHERULE_RENEW_REFERENCES=1` writes the references anew; look at what changed.
+//! `SPHERULE_RENEW_REFERENCES=1` writes the references again; review what changed.
 
 mod common;
 
 use std::path::PathBuf;
 
-use common::{all_adapters, gpus, open, skips};
+use common::{all_adapters, device, gpus, open, open_through_naga, open_with_limits, skips};
 use glam::{UVec2, Vec3};
 use spherule::accel::Acceleration;
 use spherule::device::GpuOptions;
@@ -18,8 +19,8 @@ use spherule::render::{self, QUIET, Settings};
 use spherule::scene::{View, World};
 use spherule::{Device, Image, Scene, wgpu};
 
-/// What the perceptual difference may be on average. Two renders of one scene that differ by
-/// roundings stay below a tenth of this; a sphere that moves by a pixel exceeds it.
+/// The largest mean perceptual difference. Two renders of one scene that differ by roundings stay
+/// below a tenth of this; a sphere moved by a pixel exceeds it.
 const FLIP_TOLERANCE: f32 = 0.002;
 
 fn two_spheres(width: u32, height: u32) -> Scene {
@@ -56,7 +57,7 @@ fn on_gpus(scene: &Scene, shading: Shading) -> Vec<Image> {
     all_adapters()
         .iter()
         .map(|adapter| {
-            let device = Device::Gpu(Box::new(open(adapter, GpuOptions::default())));
+            let device = device(adapter);
             render::render(scene, shading, &device, QUIET)
                 .expect("the GPU renders")
                 .image
@@ -72,7 +73,7 @@ fn flip(a: &Image, b: &[u8]) -> f32 {
     nv_flip::FlipPool::from_image(&errors).mean()
 }
 
-/// The committed reference, or, when they are renewed, this image written as it.
+/// The committed reference; when references are renewed, writes this image as the reference first.
 fn reference(name: &str, image: &Image) -> Vec<u8> {
     let path = PathBuf::from("tests/references").join(name);
     if std::env::var_os("SPHERULE_RENEW_REFERENCES").is_some_and(|value| value != "0") {
@@ -90,7 +91,7 @@ fn reference(name: &str, image: &Image) -> Vec<u8> {
     reference.into_raw()
 }
 
-/// The figures: name, scene, shading.
+/// The figures: file name, scene and shading.
 fn figures() -> Vec<(&'static str, Scene, Shading)> {
     let sphere = Sphere::new(Vec3::new(0.0, 0.0, -3.0), 0.5);
     let mut crambin = Scene::load("scenes/1crn.pdb").expect("crambin");
@@ -135,7 +136,8 @@ fn figures_match_their_references_on_gpus() {
     }
 }
 
-/// The twin of the tests above: a sphere moved by a pixel, and two channels swapped, must fail.
+/// The twin of the tests above: an image with a sphere moved by a pixel, or with two channels
+/// swapped, must not match.
 #[test]
 fn wrong_figures_do_not_match() {
     for (name, scene, shading) in figures() {
@@ -145,13 +147,14 @@ fn wrong_figures_do_not_match() {
         let mut moved = scene.clone();
         let view = moved.view_or_framed();
         let sphere = &mut moved.world.spheres[0];
-        // A pixel, at the distance of the first sphere.
+        // The size of a pixel at the distance of the first sphere.
         let depth = (sphere.center() - view.eye).length();
         let pixel =
             2.0 * (0.5 * view.vertical_fov.to_radians()).tan() as f32 * depth / scene.height as f32;
         *sphere = Sphere::new(sphere.center() + Vec3::X * pixel, sphere.radius());
         moved.view = Some(view);
-        // In a molecule one atom is a few pixels of thousands, and may be hidden; there all move.
+        // In a molecule, one atom is a few pixels of thousands and may be hidden, so all atoms are
+        // moved.
         if moved.world.spheres.len() > 2 {
             for sphere in &mut moved.world.spheres {
                 *sphere = Sphere::new(sphere.center() + Vec3::X * pixel, sphere.radius());
@@ -202,7 +205,8 @@ fn cpu_and_gpu_agree_within_the_stated_tolerance() {
     }
 }
 
-/// The twin of the test above: the second sphere left out, or the picture shifted by a pixel.
+/// The twin of the test above: an image without the second sphere, or shifted by a pixel, must be
+/// rejected.
 #[test]
 fn the_stated_tolerance_rejects_wrong_images() {
     let scene = two_spheres(640, 360);
@@ -219,7 +223,7 @@ fn the_stated_tolerance_rejects_wrong_images() {
     }
 }
 
-/// The kernel's module also goes through naga, as on Metal and DirectX 12.
+/// The kernel translated by naga, as on Metal and DirectX 12, renders the same image.
 #[test]
 fn naga_renders_the_same() {
     if skips("naga_renders_the_same") {
@@ -228,13 +232,7 @@ fn naga_renders_the_same() {
     let scene = two_spheres(320, 180);
     let cpu = on_cpu(&scene, Shading::Lit);
     for adapter in all_adapters() {
-        let gpu = open(
-            adapter,
-            GpuOptions {
-                through_naga: true,
-                ..GpuOptions::default()
-            },
-        );
+        let gpu = open_through_naga(adapter);
         assert!(!gpu.passes_spirv_through());
         let image = render::render(&scene, Shading::Lit, &Device::Gpu(Box::new(gpu)), QUIET)
             .expect("naga takes the kernel")
@@ -244,8 +242,9 @@ fn naga_renders_the_same() {
     }
 }
 
-/// Tiny bindings, so that the world is split into parts and the image into tiles, and a pace so
-/// slow that each tile takes many launches, and workgroups too small for lists: the image must not change.
+/// The image must not change with tiny bindings, which split the world into parts and the image
+/// into tiles; with a pace so slow that each tile takes many launches; or with workgroups too small
+/// for brute force by tiles.
 #[test]
 fn splitting_changes_nothing() {
     if skips("splitting_changes_nothing") {
@@ -256,28 +255,16 @@ fn splitting_changes_nothing() {
     for adapter in all_adapters() {
         let whole = open(adapter, GpuOptions::default());
         let limits = wgpu::Limits {
-            // 64 spheres and 64 pixels a binding.
+            // A binding holds 64 spheres or 64 pixels.
             max_storage_buffer_binding_size: 1024,
             ..adapter.limits()
         };
-        let split = open(
-            adapter,
-            GpuOptions {
-                limits: Some(limits),
-                ..GpuOptions::default()
-            },
-        );
+        let split = open_with_limits(adapter, limits);
         let limits = wgpu::Limits {
             max_compute_invocations_per_workgroup: 128,
             ..adapter.limits()
         };
-        let narrow = open(
-            adapter,
-            GpuOptions {
-                limits: Some(limits),
-                ..GpuOptions::default()
-            },
-        );
+        let narrow = open_with_limits(adapter, limits);
         let launch = launch_of(&scene);
         for acceleration in [Acceleration::Tree, Acceleration::BruteForce] {
             let settings = Settings {
@@ -308,7 +295,7 @@ fn launch_of(scene: &Scene) -> Launch {
     render::whole_image(scene).expect("the scene is sound")
 }
 
-/// Every thread writes its pixel: a buffer filled with a sentinel keeps none of it.
+/// Every thread writes its pixel: no sentinel is left in a buffer that was filled with sentinels.
 #[test]
 fn every_pixel_is_written() {
     if skips("every_pixel_is_written") {
@@ -329,7 +316,7 @@ fn every_pixel_is_written() {
                 .expect("a kernel");
             let sentinel = Pixel::new(Vec3::splat(-7.0), -7.0);
             let count = (width * height) as usize;
-            // One pixel more than the image has, which must stay as it is.
+            // One more pixel than the image has, which must not be written.
             let pixels = gpu
                 .upload("pixels", &vec![sentinel; count + 1])
                 .expect("pixels");
@@ -381,8 +368,8 @@ fn a_spheres_silhouette_has_its_area() {
             let hits = image.pixels().iter().filter(|pixel| pixel.is_hit()).count();
             let pixels = 801.0 * radius / (distance * distance - radius * radius).sqrt();
             let area = std::f64::consts::PI * pixels * pixels;
-            // Gauss's circle problem: the count is off by about R^(2/3), and never seen beyond
-            // four times that.
+            // Gauss's circle problem: the count is off by about R^(2/3), and was never seen off by
+            // more than four times that.
             let tolerance = 4.0 * pixels.powf(2.0 / 3.0);
             assert!(
                 (hits as f64 - area).abs() <= tolerance,
@@ -401,7 +388,7 @@ fn the_normal_at_the_centre_faces_the_camera() {
             let centre = (size.1 / 2 * size.0 + size.0 / 2) as usize;
             for (channel, expected) in [128_u8, 128, 255].iter().enumerate() {
                 let found = rgb[3 * centre + channel];
-                // An even-sized image has no pixel at its very centre.
+                // An image of even size has no pixel exactly at its centre.
                 let slack = if size.0 % 2 == 1 || size.0 > 1000 {
                     1
                 } else {
@@ -416,7 +403,7 @@ fn the_normal_at_the_centre_faces_the_camera() {
     }
 }
 
-/// The ground's horizon is where the ray in a column is tangent to the ground sphere.
+/// In each column, the horizon is where the ray is tangent to the ground sphere.
 #[test]
 fn the_horizon_is_where_rays_touch_the_ground() {
     let scene = two_spheres(1280, 720);
@@ -425,7 +412,7 @@ fn the_horizon_is_where_rays_touch_the_ground() {
     let c = ground.center().as_dvec3();
     let radius = f64::from(ground.radius());
     for image in all_paths(&scene, Shading::Flat) {
-        // Columns that the small sphere does not cover.
+        // The small sphere covers none of these columns.
         for column in [0_u32, 100, 400, 900, 1279] {
             let x = f64::from(2 * column + 1) / 1280.0 - 1.0;
             let forward = camera.forward.as_dvec3() + camera.right.as_dvec3() * x;
@@ -445,7 +432,7 @@ fn the_horizon_is_where_rays_touch_the_ground() {
             let first = (0..720)
                 .find(|row| image.pixel(column, *row).expect("a pixel").is_hit())
                 .expect("the ground is in view");
-            // The first row whose centre is below the horizon.
+            // `first` must be the first row whose centre is below the horizon.
             assert!(
                 (f64::from(first) + 0.5 - horizon - 0.5).abs() <= 0.75,
                 "column {column}: row {first}, horizon at {horizon}"
@@ -455,7 +442,7 @@ fn the_horizon_is_where_rays_touch_the_ground() {
 }
 
 #[test]
-fn misses_are_left_untouched_and_hits_have_depth() {
+fn misses_show_the_background_and_hits_have_depth() {
     let mut scene = one_sphere(Sphere::new(Vec3::new(0.0, 0.0, -3.0), 0.5), 33, 33);
     scene.background = Vec3::new(0.25, 0.5, 0.75);
     for image in all_paths(&scene, Shading::Flat) {
@@ -470,7 +457,7 @@ fn misses_are_left_untouched_and_hits_have_depth() {
     }
 }
 
-/// The image on the CPU and on every adapter there is.
+/// The image on the CPU and on every adapter.
 fn all_paths(scene: &Scene, shading: Shading) -> Vec<Image> {
     let mut images = vec![on_cpu(scene, shading)];
     images.extend(on_gpus(scene, shading));

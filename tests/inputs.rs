@@ -1,5 +1,5 @@
-//! Inputs of unknown origin, through the command line: refused with exit code 2 and at once, or
-//! drawn; and nothing of them reaches the terminal as anything but text.
+//! Untrusted inputs on the command line: they are either rendered or refused at once with exit code
+//! 2, and nothing in them controls the terminal.
 
 use std::io::Write as _;
 use std::path::Path;
@@ -41,14 +41,14 @@ fn skies_that_claim_a_huge_window_are_refused_at_once() {
             .assert()
             .code(2)
             .stderr(contains("data window claims"));
-        // Instead of minutes; a gigabyte would be seen by the time that it takes, too.
+        // Decoding would take minutes, and allocating a gigabyte would exceed this time, too.
         assert!(start.elapsed() < Duration::from_secs(20));
         assert!(!output.exists());
     }
 }
 
 #[test]
-fn nothing_of_a_name_is_obeyed_by_a_terminal() {
+fn no_name_controls_the_terminal() {
     let folder = tempfile::tempdir().expect("a folder");
     let output = folder.path().join("o.png");
     let scene = folder.path().join("\u{1b}[31m\u{202e}\u{9b}J.toml");
@@ -57,11 +57,11 @@ fn nothing_of_a_name_is_obeyed_by_a_terminal() {
     for material in ["\"\\u001b[2J\"", "\"\u{202e}\\u0007\"", "\"\u{9b}2J\"", "1"] {
         std::fs::write(&scene, format!("{glass}{sphere}{material}\n")).expect("a scene");
         let explain = |command: &mut Command| {
-            let said = command.output().expect("an end");
+            let said = command.output().expect("it ends");
             let said = [said.stdout, said.stderr].concat();
             let said = String::from_utf8(said).expect("UTF-8");
-            let is_obeyed = |c: char| c.is_control() && c != '\n' || c == '\u{202e}';
-            assert!(!said.contains(is_obeyed), "{said:?}");
+            let is_control = |c: char| c.is_control() && c != '\n' || c == '\u{202e}';
+            assert!(!said.contains(is_control), "{said:?}");
             said
         };
         let _ = explain(&mut render(&scene, &output));
@@ -74,9 +74,9 @@ fn nothing_of_a_name_is_obeyed_by_a_terminal() {
     }
 }
 
-/// They took minutes; now as long as one does.
+/// Thousands of atoms in one place render as one atom does, and do not take minutes.
 #[test]
-fn many_atoms_in_one_place_are_drawn() {
+fn many_atoms_in_one_place_are_rendered() {
     let folder = tempfile::tempdir().expect("a folder");
     let atoms = folder.path().join("atoms.xyz");
     std::fs::write(&atoms, format!("32000\n\n{}", "C 0 0 0\n".repeat(32_000))).expect("a file");
@@ -95,9 +95,10 @@ fn compressed(bytes: &[u8]) -> Vec<u8> {
     encoder.finish().expect("memory")
 }
 
-/// Compressed files are read as what they hold, by themselves, in two members, or named by a scene.
+/// A compressed file is read in the format of its content: given on its own, in two gzip members,
+/// or named by a scene.
 #[test]
-fn compressed_files_are_read_as_what_they_hold() {
+fn compressed_files_are_read_by_the_format_of_their_content() {
     let folder = tempfile::tempdir().expect("a folder");
     let at = |name: &str| folder.path().join(name);
     let picture = |input: &Path| {
@@ -117,7 +118,7 @@ fn compressed_files_are_read_as_what_they_hold() {
         assert!(picture(&at(to)) == picture(&from), "{to} of two members");
     }
     assert!(picture(&at("s.toml.gz")) == picture(Path::new("scenes/1crn.pdb")));
-    // The picture is named after what is in the file.
+    // The image's name is the file's without both extensions.
     spherule()
         .current_dir(folder.path())
         .args([

@@ -1,4 +1,4 @@
-//! Renders that end before they are complete: by a time limit, by whoever watches them, and by a signal.
+//! Renders that end early: by a time limit, by their progress callback, or by a signal.
 
 mod common;
 
@@ -8,23 +8,26 @@ use std::time::Duration;
 
 use spherule::Device;
 use spherule::accel::Acceleration;
-use spherule::device::GpuOptions;
 use spherule::kernel::{Rung, Shading};
 use spherule::render::EffectChoice;
 use spherule::render::paths::StoppedBy;
 use spherule::render::{QUIET, Rendered, Settings, render};
 use spherule::scene::Scene;
 
-/// A pass over this takes minutes of one thread: what is cut was cut within it.
-fn endless() -> Scene {
-    let mut scene = Scene::load("scenes/fog.toml").expect("a scene");
-    (scene.width, scene.height) = (4096, 2048);
+/// A scene of the folder `scenes`, in this size.
+fn scene(name: &str, width: u32, height: u32) -> Scene {
+    let mut scene = Scene::load(format!("scenes/{name}")).expect("a scene");
+    (scene.width, scene.height) = (width, height);
     scene
 }
 
+/// One sample of this takes minutes, so a short render is cut within it.
+fn endless() -> Scene {
+    scene("fog.toml", 4096, 2048)
+}
+
 fn small(width: u32, height: u32) -> Scene {
-    let mut scene = Scene::load("scenes/soft-light.toml").expect("a scene");
-    (scene.width, scene.height) = (width, height);
+    let mut scene = scene("soft-light.toml", width, height);
     scene.sampling.samples = Some(16);
     scene
 }
@@ -33,13 +36,18 @@ fn lit() -> Settings {
     Settings::from((Shading::Lit, Rung::Robust))
 }
 
-/// The CPU, and a GPU of each kind.
+fn lit_within(time_limit: Duration) -> Settings {
+    Settings {
+        time_limit: Some(time_limit),
+        ..lit()
+    }
+}
+
+/// The CPU, and every adapter.
 fn devices(test: &str) -> Vec<Device> {
     let mut devices = vec![Device::Cpu];
     if !common::skips(test) {
-        let open = |adapter| common::open(adapter, GpuOptions::default());
-        let gpus = common::all_adapters().iter().map(open);
-        devices.extend(gpus.map(|gpu| Device::Gpu(Box::new(gpu))));
+        devices.extend(common::all_adapters().iter().map(common::device));
     }
     devices
 }
@@ -56,12 +64,9 @@ fn opacities(rendered: &Rendered) -> (u64, u64) {
 fn a_time_limit_cuts_a_sample() {
     for device in devices("a_time_limit_cuts_a_sample") {
         let scene = endless();
-        let settings = Settings {
-            time_limit: Some(Duration::from_millis(300)),
-            ..lit()
-        };
+        let settings = lit_within(Duration::from_millis(300));
         let rendered = render(&scene, settings, &device, QUIET).expect("an image");
-        // Without the cut it takes minutes.
+        // Without the time limit it takes minutes.
         let took = rendered.timings.trace;
         assert!(took < Duration::from_secs(20), "{took:?}");
         let reached = rendered.reached.expect("samples");
@@ -75,7 +80,7 @@ fn a_time_limit_cuts_a_sample() {
         assert!(!rendered.is_complete());
         let pixels = u64::from(scene.width) * u64::from(scene.height);
         assert!(rendered.traced > 0 && rendered.traced < pixels);
-        // The preview shows the rest: nothing is black or missing.
+        // The preview fills the rest: no pixel is black or missing.
         assert!(!rendered.image.has_alpha());
         let last = rendered.image.pixels().last().expect("pixels");
         assert!(last.is_written() && last.color().max_element() > 0.0);
@@ -85,13 +90,10 @@ fn a_time_limit_cuts_a_sample() {
 #[test]
 fn a_time_limit_that_is_not_reached_changes_nothing() {
     for device in devices("a_time_limit_that_is_not_reached_changes_nothing") {
-        // A width whose rows do not begin where a GPU's launch may.
+        // The width is such that rows begin where no launch on a GPU may begin.
         let scene = small(213, 121);
         let free = render(&scene, lit(), &device, QUIET).expect("an image");
-        let settings = Settings {
-            time_limit: Some(Duration::from_secs(1000)),
-            ..lit()
-        };
+        let settings = lit_within(Duration::from_secs(1000));
         let limited = render(&scene, settings, &device, QUIET).expect("an image");
         assert!(free.is_complete() && limited.is_complete());
         assert_eq!(free.image, limited.image);
@@ -102,12 +104,20 @@ fn a_time_limit_that_is_not_reached_changes_nothing() {
     }
 }
 
-/// Whether this does in a moment what takes the others minutes.
+/// Whether the device is a real GPU, which renders in a moment what takes the others minutes.
 fn is_fast(device: &Device) -> bool {
     matches!(device, Device::Gpu(gpu) if !gpu.is_software())
 }
 
-/// Breaks off after so many calls.
+/// A number of calls of a progress callback, which depends on the kind of the device.
+fn calls_on(device: &Device, cpu: usize, gpu: usize) -> usize {
+    match device {
+        Device::Cpu => cpu,
+        Device::Gpu(_) => gpu,
+    }
+}
+
+/// A progress callback that interrupts the render after this many calls.
 fn after(calls: usize) -> impl Fn(f64) -> ControlFlow<()> + Sync {
     let count = AtomicUsize::new(0);
     move |done| {
@@ -121,10 +131,9 @@ fn after(calls: usize) -> impl Fn(f64) -> ControlFlow<()> + Sync {
 }
 
 #[test]
-fn camera_rays_are_broken_off_and_what_is_there_is_right() {
-    for device in devices("camera_rays_are_broken_off_and_what_is_there_is_right") {
-        let mut scene = Scene::load("scenes/two-spheres.toml").expect("a scene");
-        (scene.width, scene.height) = (1024, 8192);
+fn interrupted_camera_rays_keep_the_pixels_that_are_done() {
+    for device in devices("interrupted_camera_rays_keep_the_pixels_that_are_done") {
+        let scene = scene("two-spheres.toml", 1024, 8192);
         for shading in [Shading::Lit, Shading::Depth] {
             let settings = Settings {
                 effects: EffectChoice::Auto,
@@ -134,14 +143,10 @@ fn camera_rays_are_broken_off_and_what_is_there_is_right() {
             let whole = render(&scene, settings, &device, QUIET).expect("an image");
             assert!(whole.is_complete());
             assert!(!whole.image.has_alpha());
-            let calls = if matches!(device, Device::Cpu) {
-                200
-            } else {
-                2
-            };
+            let calls = calls_on(&device, 200, 2);
             let part = render(&scene, settings, &device, &after(calls)).expect("an image");
             if part.is_complete() {
-                // A GPU that does it all in one launch.
+                // A GPU may render everything in one launch.
                 assert!(!matches!(device, Device::Cpu));
                 assert_eq!(part.image, whole.image);
                 continue;
@@ -165,15 +170,8 @@ fn camera_rays_are_broken_off_and_what_is_there_is_right() {
 #[test]
 fn a_time_limit_cuts_camera_rays() {
     for device in devices("a_time_limit_cuts_camera_rays") {
-        let mut scene = Scene::load("scenes/c60.xyz").expect("a scene");
-        (scene.width, scene.height) = (4096, 4096);
-        let within = |limit| {
-            let settings = Settings {
-                time_limit: Some(limit),
-                ..lit()
-            };
-            render(&scene, settings, &device, QUIET).expect("an image")
-        };
+        let scene = scene("c60.xyz", 4096, 4096);
+        let within = |limit| render(&scene, lit_within(limit), &device, QUIET).expect("an image");
         let none = within(Duration::ZERO);
         assert_eq!((none.traced, none.rays), (0, 0));
         let part = within(Duration::from_millis(2));
@@ -188,20 +186,16 @@ fn a_time_limit_cuts_camera_rays() {
 }
 
 #[test]
-fn light_paths_are_broken_off_in_the_first_sample_and_later() {
-    for device in devices("light_paths_are_broken_off_in_the_first_sample_and_later") {
+fn light_paths_are_interrupted_in_the_first_sample_and_later() {
+    for device in devices("light_paths_are_interrupted_in_the_first_sample_and_later") {
         let scene = small(512, 512);
-        let calls = if matches!(device, Device::Cpu) {
-            200
-        } else {
-            2
-        };
+        let calls = calls_on(&device, 200, 2);
         let part = render(&scene, lit(), &device, &after(calls)).expect("an image");
         assert!(!part.is_complete());
         let reached = part.reached.expect("samples");
         assert_eq!(reached.stopped_by, StoppedBy::Interrupted);
         if reached.samples > 0 {
-            // A GPU that does the first sample in one launch.
+            // A GPU may trace the first sample in one launch.
             assert!(!matches!(device, Device::Cpu));
             continue;
         }
@@ -211,16 +205,13 @@ fn light_paths_are_broken_off_in_the_first_sample_and_later() {
         let alpha = common::opacities(&part.image);
         for (index, alpha) in alpha.iter().enumerate() {
             let pixel = part.image.pixels()[index];
-            // One sample in a shadow is as dark as none.
+            // A pixel that was traced may be black, too: its sample may be in a shadow.
             assert!(*alpha == 1.0 || pixel.color() == glam::Vec3::ZERO);
         }
 
-        // 16 pixels a call at most, and fewer at first and where a machine is busy: in the midst of the second launch.
-        let calls = if matches!(device, Device::Cpu) {
-            27_000
-        } else {
-            12
-        };
+        // A call comes after at most 16 pixels, and after fewer at first and on a busy machine. So
+        // this interrupts in the midst of the second launch.
+        let calls = calls_on(&device, 27_000, 12);
         let part = render(&scene, lit(), &device, &after(calls)).expect("an image");
         let reached = part.reached.expect("samples");
         if !part.is_complete() {
@@ -230,20 +221,17 @@ fn light_paths_are_broken_off_in_the_first_sample_and_later() {
             assert!((1..16).contains(&reached.samples), "{}", reached.samples);
             assert!(!part.image.has_alpha());
         }
-        // Noise is that of the pixels as they are.
+        // The noise is that of the pixels so far.
         assert!(reached.noise > 0.0);
     }
 }
 
 #[test]
-fn nothing_is_traced_for_who_does_not_want_it() {
-    for device in devices("nothing_is_traced_for_who_does_not_want_it") {
+fn a_render_that_is_interrupted_at_once_traces_nothing() {
+    for device in devices("a_render_that_is_interrupted_at_once_traces_nothing") {
         for scene in ["scenes/two-spheres.toml", "scenes/soft-light.toml"] {
             let scene = Scene::load(scene).expect("a scene");
-            let settings = Settings {
-                time_limit: Some(Duration::from_secs(1)),
-                ..lit()
-            };
+            let settings = lit_within(Duration::from_secs(1));
             for settings in [lit(), settings] {
                 let rendered = render(&scene, settings, &device, &after(0)).expect("an image");
                 assert_eq!(rendered.traced, 0);
@@ -263,7 +251,8 @@ mod signals {
     use std::process::{Command, Stdio};
     use std::time::{Duration, Instant};
 
-    /// Renders to a file that holds something else, sends the signal some time after tracing has begun, and looks at what is there.
+    /// Renders over an existing file, sends the signal some time after tracing has begun, and
+    /// checks that the image so far was written.
     fn is_kept(
         scene: &Path,
         device: &str,
@@ -289,7 +278,7 @@ mod signals {
                 .expect("it starts");
             let mut stderr = BufReader::new(child.stderr.take().expect("a pipe"));
             let mut said = String::new();
-            // It is said just before the tracing, or before a GPU's kernel is compiled.
+            // This line is printed just before tracing, or before a GPU's kernel is compiled.
             while !said.contains("precision ") {
                 let read = stderr.read_line(&mut said).expect("text");
                 assert!(read > 0, "{said}");
@@ -299,13 +288,14 @@ mod signals {
                 .args(["-s", signal, &child.id().to_string()])
                 .status()
                 .expect("kill runs");
-            assert!(sent.success(), "it had ended before the signal");
+            assert!(sent.success(), "the command ended before the signal");
             let started = Instant::now();
             stderr.read_to_string(&mut said).expect("text");
             let status = child.wait().expect("it ends");
             let took = started.elapsed();
             assert_eq!(status.code(), Some(code), "{said}");
-            // What is in flight is finished, then the image is encoded; without the signal it takes minutes.
+            // Work in progress is finished, then the image is encoded. Without the signal it takes
+            // minutes.
             assert!(took < Duration::from_secs(20), "{took:?}");
             if said.contains("before the first pixel was done") && wait.as_secs() < 60 {
                 assert_eq!(std::fs::read(&output).expect("a file"), before);
@@ -313,17 +303,17 @@ mod signals {
                 continue;
             }
             assert!(said.contains("interrupted: wrote "), "{said}");
-            // A busy machine may still be at the first sample.
+            // A busy machine may still be in the first sample.
             if !said.contains(says) && wait.as_secs() < 60 {
                 wait *= 2;
                 continue;
             }
             assert!(said.contains(says), "{said}");
-            let image = image::open(&output).expect("a picture");
+            let image = image::open(&output).expect("an image");
             let is_whole = says.contains("samples");
             assert_eq!(image.color().has_alpha(), !is_whole);
             let others = std::fs::read_dir(folder.path()).expect("a folder").count();
-            assert_eq!(others, 1, "files are left");
+            assert_eq!(others, 1, "files are left behind");
             break;
         }
     }
@@ -345,7 +335,7 @@ mod signals {
     }
 
     #[test]
-    fn sigterm_and_sighup_do_so_too() {
+    fn sigterm_and_sighup_keep_light_paths() {
         is_kept(soft_light(), "cpu", &LONG, "TERM", 143, SAMPLES);
         is_kept(soft_light(), "cpu", &LONG, "HUP", 129, SAMPLES);
     }
@@ -357,7 +347,8 @@ mod signals {
         is_kept(fog, "cpu", &large, "INT", 130, PIXELS);
     }
 
-    /// Each ray is tested against every sphere, because the boxes around them are as coarse as one of them is far away.
+    /// Each ray is tested against every sphere here: one sphere is so far away that all boxes are
+    /// too coarse to cull.
     #[test]
     fn sigint_keeps_camera_rays() {
         let folder = tempfile::tempdir().expect("a folder");

@@ -1,7 +1,8 @@
-//! The committed SPIR-V: that it is what the sources say, and lays memory out as the host does.
+//! The committed SPIR-V: it is what the sources compile to, and has the host's memory layout.
 //!
-//! With the feature `compile-kernel` the sources have just been compiled, and the test compares
-//! bit by bit. `SPHERULE_RENEW_KERNEL=1` writes what was compiled over what is committed.
+//! With the feature `compile-kernel` the sources have just been compiled, and the test compares the
+//! modules bit by bit. `SPHERULE_RENEW_KERNEL=1` overwrites the committed modules with the compiled
+//! ones.
 
 use std::collections::{BTreeMap, HashSet};
 
@@ -77,9 +78,9 @@ fn the_modules_have_the_entry_points_that_the_host_calls() {
     }
 }
 
-/// Every struct with several members that a buffer of the module holds must be one of the shared
-/// types, with the offsets that rustc gives it; and every array's stride must be a shared type's
-/// size. (Structs that no buffer holds are the kernel's own business.)
+/// Every struct with several members in a buffer of the module must be one of the shared types,
+/// with the offsets that rustc gives it. Every array's stride must be a shared type's size. Structs
+/// that are in no buffer do not matter.
 #[test]
 fn the_modules_offsets_are_the_hosts() {
     for bytes in [spirv::F32, spirv::F64] {
@@ -124,7 +125,7 @@ fn check_offsets(bytes: &[u8]) {
         at += count;
     }
 
-    // What the buffers hold, down to the last member.
+    // All types in buffers, down to the last member.
     let mut index = 0;
     while index < in_buffers.len() {
         let inner = parts.get(&in_buffers[index]).cloned().unwrap_or_default();
@@ -143,7 +144,7 @@ fn check_offsets(bytes: &[u8]) {
             .map(|entry| value[entry])
             .collect()
     };
-    // Padding is a member too, in the module.
+    // In the module, padding is a member, too.
     let mut expected: Vec<Vec<u32>> = vec![
         fields("Operands"),
         fields("Outcome"),
@@ -155,7 +156,7 @@ fn check_offsets(bytes: &[u8]) {
         fields("Walk"),
         with_padding(&fields("Camera"), 12),
         fields("Material"),
-        // Their padding is at the end.
+        // These have their padding at the end.
         [fields("Light"), vec![44]].concat(),
         [fields("Sky"), vec![72]].concat(),
         [fields("Fog"), vec![36, 40]].concat(),
@@ -201,7 +202,7 @@ fn layout_of_host() -> BTreeMap<&'static str, u32> {
     layout::NAMES.iter().copied().zip(table).collect()
 }
 
-/// Each field is followed by padding at its offset plus `size`.
+/// Adds padding after each field, at its offset plus `size`.
 fn with_padding(offsets: &[u32], size: u32) -> Vec<u32> {
     offsets
         .iter()
@@ -209,9 +210,9 @@ fn with_padding(offsets: &[u32], size: u32) -> Vec<u32> {
         .collect()
 }
 
-/// What is left of a module for one entry point is a module, without what the others need.
+/// A module reduced to one entry point is a valid module, without what only the others need.
 #[test]
-fn an_entry_point_alone_has_only_what_is_its_own() {
+fn a_module_reduced_to_one_entry_point_has_only_what_that_needs() {
     const ENTRY_POINT: u32 = 15;
     const FUNCTION: u32 = 54;
     const VARIABLE: u32 = 59;

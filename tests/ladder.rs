@@ -1,14 +1,13 @@
-//! What each rung promises, on every family of rays, on the CPU and on every adapter, decided by
-//! the oracle. `SPHERULE_RAYS=N` sets how many rays a family; the slow suite asks for ten million
+//! What each rung promises, on every family of rays, on the CPU and on every adapter, judged by the
+//! oracle. `SPHERULE_RAYS=N` sets the number of rays in a family; the slow suite uses ten million
 //! in all.
 
 mod common;
 
-use common::{all_adapters, open, skips};
+use common::{all_adapters, device, open_through_naga, skips};
 use spherule::Device;
 use spherule::accuracy::families::Family;
 use spherule::accuracy::measure::{Measured, intersect_all, intersect_on_gpu, judge};
-use spherule::device::GpuOptions;
 use spherule::device::canary::Canary;
 use spherule::kernel::Rung;
 use spherule::ulp::shown;
@@ -50,7 +49,7 @@ fn check_upper_rungs(device: &Device) {
             let measured = measure(device, rung, family);
             assert!(
                 measured.hits * 20 > measured.rays,
-                "{} hits tell nothing",
+                "only {} hits",
                 measured.hits
             );
             assert!(
@@ -98,7 +97,7 @@ fn certified_is_right_everywhere_on_gpus() {
         return;
     }
     for adapter in all_adapters() {
-        check_certified(&Device::Gpu(Box::new(open(adapter, GpuOptions::default()))));
+        check_certified(&device(adapter));
     }
 }
 
@@ -113,12 +112,12 @@ fn upper_rungs_keep_their_bounds_on_gpus() {
         return;
     }
     for adapter in all_adapters() {
-        check_upper_rungs(&Device::Gpu(Box::new(open(adapter, GpuOptions::default()))));
+        check_upper_rungs(&device(adapter));
     }
 }
 
-/// What the lower rungs are for, and what they are not: `robust` cures small spheres far away,
-/// and neither has digits left on a huge ground.
+/// What the lower rungs are for: `robust` is right on small spheres far away, where `textbook` is
+/// not, and neither keeps digits on a huge ground.
 #[test]
 fn lower_rungs_fail_where_they_are_said_to() {
     let share_over_4 = |rung, family| {
@@ -135,30 +134,24 @@ fn lower_rungs_fail_where_they_are_said_to() {
         robust_wrong < 0.1 * textbook_wrong,
         "{textbook_wrong} {robust_wrong}"
     );
-    // Half of the generic rays aim at a silhouette or near it.
+    // Half of the generic rays aim at or near a silhouette.
     assert!(share_over_4(Rung::Robust, Family::Generic).0 < 0.05);
     assert!(share_over_4(Rung::Robust, Family::Ground).0 > 0.9);
 }
 
-/// The mutation: through naga, which drops `NoContraction`, the compensated rung must be refused by
-/// the canary wherever the driver makes use of that freedom, and its answers are then wrong.
+/// naga drops `NoContraction`. If the driver then rearranges operations, the compensated rung is
+/// wrong, and the canary must refuse it.
 #[test]
 fn without_no_contraction_the_canary_objects() {
     if skips("without_no_contraction_the_canary_objects") {
         return;
     }
     for adapter in all_adapters() {
-        let gpu = open(
-            adapter,
-            GpuOptions {
-                through_naga: true,
-                ..GpuOptions::default()
-            },
-        );
+        let gpu = open_through_naga(adapter);
         let samples = Family::Ground.sample(7, 10_000);
         let answers = intersect_on_gpu(&gpu, Rung::Compensated, &samples).expect("it runs");
         let measured = judge(&samples, &answers);
-        let canary = Canary::on_gpu(&gpu).expect("it sings");
+        let canary = Canary::on_gpu(&gpu).expect("the canary runs");
         println!("{}: {canary:?}\n{measured:?}", gpu.name());
         let objects = canary.objection(Rung::Compensated).is_some();
         assert_eq!(
@@ -166,26 +159,26 @@ fn without_no_contraction_the_canary_objects() {
             measured.max_ulp > Some(1),
             "{canary:?} {measured:?}"
         );
-        // Both drivers that were tried do; one that keeps the operations apart may run the rung.
+        // Both drivers that were tried rearrange. A driver that does not may run the rung.
         assert!(objects, "{}", gpu.name());
     }
 }
 
-/// CPU and GPU agree bit for bit wherever no division or square root of the device's own decides:
-/// the corrected ones of the compensated rung leave the same float.
+/// CPU and GPU agree bit for bit on the compensated rung, because its quotients and roots are
+/// corrected and do not depend on the device's own.
 #[test]
 fn the_compensated_rung_gives_the_same_bits_everywhere() {
     if skips("the_compensated_rung_gives_the_same_bits_everywhere") {
         return;
     }
     for adapter in all_adapters() {
-        let device = Device::Gpu(Box::new(open(adapter, GpuOptions::default())));
+        let device = device(adapter);
         for family in [Family::Generic, Family::Far, Family::Inside] {
             let samples = family.sample(99, 20_000);
             let on_cpu = intersect_all(&Device::Cpu, Rung::Compensated, &samples).expect("CPU");
             let on_gpu = intersect_all(&device, Rung::Compensated, &samples).expect("GPU");
             let differing = on_cpu.iter().zip(&on_gpu).filter(|(a, b)| a != b).count();
-            // A root half-way between two floats, up to 2⁻⁴⁶, may go either way.
+            // A root within 2⁻⁴⁶ of half-way between two floats may be rounded either way.
             assert!(differing <= 2, "{}: {differing}", family.name());
         }
     }

@@ -1,5 +1,4 @@
-//! Properties of each rung over arbitrary inputs of the domain, with counterexamples shrunk to
-//! something that can be read.
+//! Properties of each rung over arbitrary inputs in the domain. Counterexamples are shrunk.
 
 use glam::Vec3;
 use proptest::prelude::*;
@@ -12,7 +11,7 @@ use spherule::kernel::precision::intersect;
 use spherule::kernel::{Camera, Hit, Ray, Rung, Sphere};
 use spherule::ulp;
 
-/// A coordinate of the domain: anything up to 2²⁰, with small numbers as likely as large ones.
+/// A coordinate in the domain: up to 2²⁰, with small numbers as likely as large ones.
 fn coordinate() -> impl Strategy<Value = f32> {
     (-1.0_f32..1.0, -20_i32..=20).prop_map(|(m, e)| m * 2.0_f32.powi(e))
 }
@@ -21,13 +20,13 @@ fn vector() -> impl Strategy<Value = Vec3> {
     [coordinate(), coordinate(), coordinate()].prop_map(Vec3::from_array)
 }
 
-/// A radius of the domain, 2⁻¹⁰ to 2²³.
+/// A radius in the domain, 2⁻¹⁰ to 2²³.
 fn radius() -> impl Strategy<Value = f32> {
     (1.0_f32..2.0, -10_i32..23).prop_map(|(m, e)| m * 2.0_f32.powi(e))
 }
 
-/// A ray that passes the sphere at a distance of `off` radii from its centre, from anywhere: most
-/// lines through random points miss by far, and tell nothing. One in three begins before its origin.
+/// A sphere, and a ray from anywhere that passes its centre at `off` radii: most lines through
+/// random points miss by far and test nothing. One in three begins before its origin.
 fn aimed() -> impl Strategy<Value = (Ray, Sphere)> {
     (
         vector(),
@@ -46,7 +45,8 @@ fn aimed() -> impl Strategy<Value = (Ray, Sphere)> {
                 let length = 2.0_f32.powi(scale);
                 let mut ray = Ray::new(origin, toward.try_normalize()? * length);
                 if start < 0.0 {
-                    // Twice as far behind as the target is ahead, or ahead as it is behind.
+                    // It begins up to four times as far behind the origin as the target is ahead;
+                    // half of these have the target behind the origin.
                     ray.t_min = 4.0 * start * toward.length() / length;
                     if start < -0.5 {
                         ray.direction = -ray.direction;
@@ -57,8 +57,9 @@ fn aimed() -> impl Strategy<Value = (Ray, Sphere)> {
         )
 }
 
-/// A camera with a view of any width, in one of four cases with axes so far from a right angle that they nearly cancel; a point of its film; and a
-/// sphere whose silhouette is near there: `off` radii away from the ray.
+/// A camera with a view of any width, a point of its film, and a sphere whose centre is `off` radii
+/// away from the ray through that point. In one of four cases the camera's axes are so far from a
+/// right angle that they nearly cancel.
 fn seen() -> impl Strategy<Value = (Camera, Vec2, Sphere, f32)> {
     let sizes = (-4_i32..4, -4_i32..4, -12_i32..16, -9_i32..3, 0_u32..4);
     let off = prop_oneof![
@@ -83,7 +84,7 @@ fn seen() -> impl Strategy<Value = (Camera, Vec2, Sphere, f32)> {
                 let up = right.cross(forward);
                 let (mut right, mut up) = (right * 2.0_f32.powi(width), up * 2.0_f32.powi(height));
                 if skew == 0 {
-                    // What the axes add up to is a thousandth of each.
+                    // The sum of the axes is a thousandth of each.
                     right *= 2.0_f32.powi(-10 - width);
                     up = (up * 2.0_f32.powi(-10 - height) - forward) / y;
                 }
@@ -99,7 +100,7 @@ fn seen() -> impl Strategy<Value = (Camera, Vec2, Sphere, f32)> {
         )
 }
 
-/// A ray and a sphere in other units of length, and the direction of another length.
+/// The ray and the sphere with lengths scaled by 2^`length`, and the direction by 2^`direction`.
 fn scaled(ray: &Ray, sphere: Sphere, length: i32, direction: i32) -> (Ray, Sphere) {
     let (length, direction) = (2.0_f32.powi(length), 2.0_f32.powi(direction));
     let of_t = |t: f32| {
@@ -125,7 +126,8 @@ fn answer(rung: Rung, ray: &Ray, sphere: Sphere) -> Option<f32> {
     (t < Hit::NONE_T).then_some(t)
 }
 
-/// Certified against the oracle: the same class, and a parameter within one unit in the last place.
+/// Compares certified with the oracle: both hit or both miss, and the parameters are within one
+/// unit in the last place.
 fn certified_is_right(ray: &Ray, sphere: Sphere) -> Result<(), TestCaseError> {
     let truth = Intersection::of(ray, &sphere).and_then(|exact| exact.nearest(ray));
     let found = answer(Rung::Certified, ray, sphere);
@@ -144,14 +146,14 @@ proptest! {
         certified_is_right(&ray, sphere)?;
     }
 
-    /// Where squares of lengths and directions are no floats, too.
+    /// The same if squares of lengths and directions overflow or underflow.
     #[test]
     fn certified_is_the_truth_in_all_units((ray, sphere) in aimed(), length in -70_i32..90, apart in -50_i32..50) {
         let (ray, sphere) = scaled(&ray, sphere, length, (length + apart).clamp(-90, 100));
         certified_is_right(&ray, sphere)?;
     }
 
-    /// Where the parameter itself is a normal float, and what it is made of on the way would not be.
+    /// The parameter is a normal float here, and unscaled intermediate results would not be.
     #[test]
     fn parameters_keep_their_digits_whatever_the_units(height in 0.1_f32..0.5, from in 0.9_f32..1.0, length in 80_i32..100) {
         let unit = 2.0_f32.powi(length);
@@ -165,7 +167,7 @@ proptest! {
         }
     }
 
-    /// Units do not change a bit of what pairs of floats say.
+    /// A change of units changes no bit of what the compensated rung finds.
     #[test]
     fn compensated_is_the_same_in_all_units((ray, sphere) in aimed(), length in -40_i32..90, apart in -50_i32..50) {
         let found = answer(Rung::Compensated, &ray, sphere);
@@ -176,7 +178,7 @@ proptest! {
         prop_assert_eq!(again.map(f64::from), expected);
     }
 
-    /// What the bounds say is certain is what every rung above the textbook's finds.
+    /// Every rung above textbook finds what the bounds say is certain.
     #[test]
     fn bounds_are_certain((ray, sphere) in aimed()) {
         let line = Line::of(&ray);
@@ -197,7 +199,8 @@ proptest! {
         prop_assert!(line.may_hit(sphere) | !is_hit);
     }
 
-    /// What a rung says is hit reaches into the cone, however long the ray's direction is; what is far off does not, and no ray meets no sphere.
+    /// If a rung finds a hit, the ray meets the cone, whatever the length of its direction. A ray
+    /// that is far off does not meet the cone, and no ray meets the cone of no sphere.
     #[test]
     fn cones_hold_all_hits((camera, film, sphere, off) in seen(), before in any::<u32>(), exponent in -80_i32..80) {
         let ray = camera.ray(film);
@@ -212,13 +215,15 @@ proptest! {
         prop_assert!((scaled.misses(0, cone) == 0) | !is_hit, "{:?} {:?}", cone, scaled);
         prop_assert_eq!((sight.misses(0, Cone::none()), scaled.misses(0, Cone::none())), (1, 1));
         let (o, r) = (sphere.center() - camera.eye, sphere.radius());
-        // Beyond the silhouette by a fifth, from outside, as large as a hundredth of what is seen.
+        // The ray is beyond the silhouette by a fifth, the eye is outside, and the sphere is large
+        // enough: a hundredth of its distance.
         if off > 1.2 && o.length() > 1.5 * r && r > 0.01 * o.length() && o.length() > 1e-3 * camera.eye.length() {
             prop_assert!(!may_meet, "{:?} {:?}", cone, sight);
         }
     }
 
-    /// No rectangle of the film loses what a rung says is hit by a ray through it; and what is far off one point is missed.
+    /// If a rung finds a hit for a ray through a rectangle of the film, the frustum does not miss
+    /// the sphere. A frustum around one point misses spheres that are far off.
     #[test]
     fn frusta_hold_all_hits((camera, film, sphere, off) in seen(), around in prop::array::uniform4(0_u32..3)) {
         let ray = camera.ray(film);
@@ -232,15 +237,16 @@ proptest! {
         prop_assert!(!(is_hit & point.misses(sphere)), "{:?}", point);
         let (o, r) = (sphere.center() - camera.eye, sphere.radius());
         let is_square = camera.forward.dot(camera.up).abs() < 1e-3 * camera.up.length();
-        // Four planes cross in the ray: one of them is at most 45° from the way to the sphere.
+        // All four planes contain the ray, and the normal of one of them is within 45° of the
+        // direction from the ray to the sphere.
         let is_plain = is_square && camera.right.length().max(camera.up.length()) < 1.5;
         if is_plain && off > 1.7 && o.length() > 1.5 * r && r > 0.02 * o.length() && o.length() > 1e-3 * camera.eye.length() {
             prop_assert!(point.misses(sphere), "{:?}", point);
         }
     }
 
-    /// Outside of the margin on |Δ| / (a r²), the class is right; and t is within 1 ulp where c has
-    /// digits.
+    /// Outside of the margin on |Δ| / (a r²), hit and miss are right, and t is within 1 ulp where c
+    /// has digits.
     #[test]
     fn compensated_and_double_are_right_outside_their_margin((ray, sphere) in aimed()) {
         let exact = Intersection::of(&ray, &sphere).expect("a line");
@@ -265,7 +271,7 @@ proptest! {
         }
     }
 
-    /// No rung gives a NaN, or a parameter outside of the ray's interval, whatever it is fed.
+    /// No rung returns NaN or a parameter outside of the ray's interval, whatever its input.
     #[test]
     fn every_answer_is_in_the_rays_interval(bits in prop::array::uniform12(any::<u32>())) {
         let [ox, oy, oz, dx, dy, dz, cx, cy, cz, r, t_min, t_max] = bits.map(f32::from_bits);

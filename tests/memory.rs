@@ -1,4 +1,4 @@
-//! Little memory and few threads: a command that cannot do its work says why, and loses nothing.
+//! Little memory and few threads: a command that cannot do its work says why and loses nothing.
 
 #![cfg(unix)]
 
@@ -7,7 +7,7 @@ mod common;
 use std::fmt::Write as _;
 use std::process::{Command, Output};
 
-/// Runs `spherule` by a shell that sets limits first.
+/// Runs `spherule` in a shell that sets limits first; returns the exit code and standard error.
 fn spherule(limits: &str, environment: &[(&str, &str)], arguments: &str) -> (Option<i32>, String) {
     let command = env!("CARGO_BIN_EXE_spherule");
     let Output { status, stderr, .. } = Command::new("bash")
@@ -29,7 +29,7 @@ fn two_spheres(folder: &tempfile::TempDir) -> String {
 }
 
 #[test]
-fn what_is_needed_is_said_before_the_work() {
+fn missing_memory_is_reported_before_the_work() {
     let folder = tempfile::tempdir().expect("a folder");
     let arguments = two_spheres(&folder) + " --size 65536x65536";
     let (code, stderr) = spherule("ulimit -v 4000000", &[], &arguments);
@@ -38,7 +38,7 @@ fn what_is_needed_is_said_before_the_work() {
         stderr.contains("out of memory: an image of 65536 × 65536 pixels"),
         "{stderr}"
     );
-    // 16 bytes a pixel, and a little.
+    // 16 bytes a pixel, and a little more.
     assert!(stderr.contains("64.0 GiB (687"), "{stderr}");
     assert!(
         stderr.contains("ulimit -v") && !stderr.contains("--device cpu`"),
@@ -47,7 +47,7 @@ fn what_is_needed_is_said_before_the_work() {
 }
 
 #[test]
-fn what_cannot_be_had_while_reading_is_no_abort() {
+fn running_out_of_memory_while_reading_is_an_error() {
     let folder = tempfile::tempdir().expect("a folder");
     let scene = folder.path().join("many.toml");
     let mut text = String::new();
@@ -64,7 +64,7 @@ fn what_cannot_be_had_while_reading_is_no_abort() {
     );
     let (code, stderr) = spherule("ulimit -v 60000", &[], &arguments);
     if code == Some(0) {
-        // Readers may come to need less.
+        // A reader that needs less memory may succeed.
         return;
     }
     assert_eq!(code, Some(1), "{stderr}");
@@ -90,7 +90,7 @@ fn a_bad_number_of_threads_is_refused() {
 }
 
 #[test]
-fn many_threads_are_capped_and_few_will_do() {
+fn many_threads_are_capped_and_few_are_enough() {
     let folder = tempfile::tempdir().expect("a folder");
     let arguments = two_spheres(&folder);
     let processors = std::thread::available_parallelism().map_or(1, usize::from);
@@ -118,8 +118,8 @@ fn many_threads_are_capped_and_few_will_do() {
     assert!(stderr.contains("CPU, 1 thread "), "{stderr}");
 }
 
-/// On a GPU in software, too, what brings the image back is there before the first ray: whatever the limit, no image is traced
-/// and then lost.
+/// The memory for reading the image back is allocated before the first ray, on a software GPU, too:
+/// whatever the limit, no image is traced and then lost.
 #[test]
 fn what_is_traced_on_a_gpu_can_be_read_back() {
     if common::skips("what_is_traced_on_a_gpu_can_be_read_back") {
@@ -136,11 +136,12 @@ fn what_is_traced_on_a_gpu_can_be_read_back() {
     );
     if common::gpus().iter().any(|gpu| !gpu.is_software()) {
         println!(
-            "SKIPPED: what_is_traced_on_a_gpu_can_be_read_back, for drivers of real GPUs take addresses as they like"
+            "SKIPPED: what_is_traced_on_a_gpu_can_be_read_back: drivers of real GPUs use an unknown amount of addresses"
         );
         return;
     }
-    // Up to the first limit that is large enough, which depends on the number of the driver's threads.
+    // Tries limits up to the first that is large enough, which depends on the number of the
+    // driver's threads.
     let is_done = (540_000..16_000_000).step_by(20_000).any(|kibibytes| {
         let limit = format!("ulimit -v {kibibytes}");
         let (code, stderr) = spherule(&limit, &[], &arguments);
@@ -151,9 +152,10 @@ fn what_is_traced_on_a_gpu_can_be_read_back() {
     assert!(is_done);
 }
 
-/// Limits on data (`ulimit -d`) are as good as those on addresses: a driver is not started in what it would break in.
+/// Limits on data (`ulimit -d`) count like those on addresses: a driver is not started if it would
+/// crash.
 #[test]
-fn a_limit_on_data_is_no_crash() {
+fn a_limit_on_data_causes_no_crash() {
     let folder = tempfile::tempdir().expect("a folder");
     let arguments = two_spheres(&folder);
     for device in ["cpu", "gpu"] {
@@ -167,10 +169,10 @@ fn a_limit_on_data_is_no_crash() {
     }
 }
 
-/// A few of its steps; `tests/memory_sweep` alone takes forty.
+/// Runs `tests/memory_sweep` with 3 steps; its default is forty.
 #[test]
-fn a_sweep_of_limits_ends_in_pictures_or_sentences() {
-    let test = "a_sweep_of_limits_ends_in_pictures_or_sentences";
+fn a_sweep_of_limits_ends_in_images_or_messages() {
+    let test = "a_sweep_of_limits_ends_in_images_or_messages";
     common::skips(test);
     let sweep = Command::new("tests/memory_sweep")
         .arg("3")

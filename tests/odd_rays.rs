@@ -1,5 +1,5 @@
-//! Rays of any bits at all: what traces them neither reads beyond its memory nor panics nor hangs, and names spheres that
-//! there are.
+//! Rays of any bits: tracing them does not read out of bounds, panic or hang, and hits name spheres
+//! that exist.
 
 use glam::Vec3;
 use spherule::accel::Acceleration;
@@ -8,7 +8,7 @@ use spherule::kernel::{Hit, Ray, Rung, Sphere};
 use spherule::random::Random;
 use spherule::trace::CpuTracer;
 
-/// Numbers at which arithmetic turns odd.
+/// Numbers at which arithmetic behaves oddly.
 const ODD: [f32; 16] = [
     f32::NAN,
     f32::INFINITY,
@@ -61,15 +61,16 @@ fn rays(random: &mut Random, count: usize) -> Vec<Ray> {
     rays
 }
 
-/// Whether the rungs' squares are floats.
+/// Whether the squares that the rungs compute neither overflow nor underflow.
 fn is_within_domain(ray: &Ray) -> bool {
     let size = ray.direction.abs().max_element();
     (1e-10..1e10).contains(&size) && ray.origin.abs().max_element() < 1e10
 }
 
-/// In worlds of every size, which are traced in every way that there is: one by one, in boxes of one and of many levels, in a tree.
+/// Worlds of these sizes are traced in every way: one sphere after the other, in boxes of one and
+/// of many levels, and in a tree.
 #[test]
-fn rays_of_any_bits_hit_spheres_that_there_are_or_none() {
+fn rays_of_any_bits_hit_spheres_that_exist_or_miss() {
     let mut random = Random::new(17);
     for count in [0, 1, 3, 20, 100, 900, 3000, 20_000] {
         let spheres: Vec<Sphere> = (0..count)
@@ -87,13 +88,13 @@ fn rays_of_any_bits_hit_spheres_that_there_are_or_none() {
                 assert!(is_none || (hit.sphere as usize) < count, "{name}");
                 let is_number = ray.origin.is_finite() && ray.direction.is_finite();
                 assert!(is_none || is_number, "{name}");
-                // An end that is no number is none.
+                // An interval whose end is NaN has no end.
                 let is_beyond = hit.t < ray.t_min || hit.t >= ray.t_max;
                 assert!(is_none || !is_beyond, "{name}");
-                let is_asked = is_within_domain(ray);
-                assert!(!is_asked || (*occluded == 1) == hit.is_some(), "{name}");
+                let is_checked = is_within_domain(ray);
+                assert!(!is_checked || (*occluded == 1) == hit.is_some(), "{name}");
             }
-            // With a tree as without one.
+            // A tree finds what testing every sphere finds.
             if count <= 900 {
                 for (ray, hit) in rays.iter().zip(&hits) {
                     if !is_within_domain(ray) {

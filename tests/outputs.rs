@@ -1,4 +1,4 @@
-//! Outputs: checked before the work, whole or not at all, and never in place of an input.
+//! Outputs are checked before the work, appear whole or not at all, and never overwrite an input.
 #![cfg(unix)]
 
 use std::fs;
@@ -8,12 +8,12 @@ use std::process::{Child, Stdio};
 use std::time::{Duration, Instant};
 
 use assert_cmd::Command;
-use assert_cmd::assert::OutputAssertExt;
+use assert_cmd::assert::{Assert, OutputAssertExt};
 use assert_cmd::cargo::cargo_bin;
 use predicates::prelude::*;
 use predicates::str::contains;
 
-/// The command, in a directory of its own.
+/// The command, run in this directory.
 fn spherule(directory: &Path) -> Command {
     let mut command = Command::new(cargo_bin("spherule"));
     command.env_remove("SPHERULE_LOG").current_dir(directory);
@@ -34,7 +34,7 @@ fn with_scene() -> tempfile::TempDir {
     directory
 }
 
-/// What is in the directory, in the order of the alphabet.
+/// The names in the directory, sorted.
 fn names(directory: &Path) -> Vec<String> {
     let entries = fs::read_dir(directory).expect("a directory").flatten();
     let mut names: Vec<String> = entries
@@ -42,6 +42,30 @@ fn names(directory: &Path) -> Vec<String> {
         .collect();
     names.sort();
     names
+}
+
+/// Runs `spherule render scene.toml --device cpu -o` with these arguments in a directory.
+fn render(directory: &Path, arguments: &[&str]) -> Assert {
+    spherule(directory).args(RENDER).args(arguments).assert()
+}
+
+/// Writes an old file that an output may replace.
+fn write_old(path: &Path) {
+    fs::write(path, "old").expect("a file");
+}
+
+/// Checks that the old file was not replaced.
+fn assert_old(path: &Path) {
+    assert_eq!(fs::read(path).expect("a file"), b"old");
+}
+
+/// What a command printed, which must be nothing but JSON.
+fn printed_json(assert: &Assert) -> serde_json::Value {
+    serde_json::from_slice(&assert.get_output().stdout).expect("JSON")
+}
+
+fn set_mode(path: &Path, mode: u32) {
+    fs::set_permissions(path, fs::Permissions::from_mode(mode)).expect("permissions");
 }
 
 const RENDER: [&str; 5] = ["render", "scene.toml", "--device", "cpu", "-o"];
@@ -53,9 +77,8 @@ fn outputs_are_checked_before_the_work() {
     let directory = with_scene();
     let path = directory.path();
     fs::create_dir(path.join("folder.png")).expect("a directory");
-    fs::write(path.join("protected.png"), "old").expect("a file");
-    let read_only = fs::Permissions::from_mode(0o444);
-    fs::set_permissions(path.join("protected.png"), read_only).expect("permissions");
+    write_old(&path.join("protected.png"));
+    set_mode(&path.join("protected.png"), 0o444);
     let cases: [(&[&str], &[&str], &str); 10] = [
         (&RENDER, &["no/out.png"], "there is no directory no"),
         (&RENDER, &["folder.png"], "is a directory"),
@@ -103,33 +126,28 @@ fn outputs_are_checked_before_the_work() {
             );
     }
     assert_eq!(names(path), ["folder.png", "protected.png", "scene.toml"]);
-    assert_eq!(
-        fs::read(path.join("protected.png")).expect("a file"),
-        b"old"
-    );
+    assert_old(&path.join("protected.png"));
 }
 
-/// A folder without rights is refused before the work, too; to root nothing is forbidden.
+/// A folder without write permission is refused before the work, too. Root may write anywhere.
 #[test]
 fn a_folder_that_may_not_be_written_is_refused_before_the_work() {
     let directory = with_scene();
     let path = directory.path();
     let closed = path.join("closed");
     fs::create_dir(&closed).expect("a directory");
-    fs::set_permissions(&closed, fs::Permissions::from_mode(0o555)).expect("permissions");
+    set_mode(&closed, 0o555);
     if fs::write(closed.join("probe"), "").is_ok() {
-        eprintln!("skipped a_folder_that_may_not_be_written_is_refused_before_the_work: root");
+        eprintln!("SKIPPED a_folder_that_may_not_be_written_is_refused_before_the_work: root");
         return;
     }
-    spherule(path)
-        .args(RENDER)
-        .args(["closed/out.png"])
-        .assert()
+    render(path, &["closed/out.png"])
         .code(1)
         .stderr(contains("no file can be created in closed").and(contains("rendering on").not()));
 }
 
-/// Scene, particles and sky, by their names, another spelling, a symlink and a hard link.
+/// The inputs are a scene, particles and a sky. Outputs name them by their names, another spelling,
+/// a symlink and a hard link.
 #[test]
 fn no_output_replaces_an_input() {
     let directory = temporary();
@@ -201,10 +219,7 @@ fn two_outputs_are_two_files() {
     let path = directory.path();
     symlink("out.png", path.join("link.json")).expect("a symlink");
     for stats in ["out.png", "./out.png", "link.json"] {
-        spherule(path)
-            .args(RENDER)
-            .args(["out.png", "--stats", stats])
-            .assert()
+        render(path, &["out.png", "--stats", stats])
             .code(2)
             .stderr(contains("is the same file as the output out.png"));
     }
@@ -227,32 +242,28 @@ fn numbers_to_stdout_and_a_page_to_a_file() {
         .args(["--scene", "far", "--json", "-", "-o", "page.html"])
         .assert()
         .success();
-    let numbers: serde_json::Value =
-        serde_json::from_slice(&assert.get_output().stdout).expect("nothing but JSON");
+    let numbers = printed_json(&assert);
     assert_eq!(numbers["families"][0]["family"], "far");
     let page = fs::read_to_string(path.join("page.html")).expect("the page");
     assert!(page.ends_with("</html>\n"));
 }
 
-/// What is overwritten keeps its permissions, its symlink, its nature.
+/// An overwritten file keeps its permissions, a symlink stays a symlink, and a device stays a
+/// device.
 #[test]
-fn overwriting_keeps_what_the_old_file_was() {
+fn overwriting_keeps_permissions_links_and_devices() {
     let directory = with_scene();
     let path = directory.path();
     let mode = |name: &str| fs::metadata(path.join(name)).expect("a file").mode() & 0o777;
     let render = |output: &str, stats: &str| {
-        spherule(path)
-            .args(RENDER)
-            .args([output, "--stats", stats])
-            .assert()
-            .success();
+        render(path, &[output, "--stats", stats]).success();
     };
-    // New files get what any new file gets.
+    // New files have the permissions of any new file.
     fs::write(path.join("new"), "").expect("a file");
     render("out.png", "stats.json");
     assert_eq!([mode("out.png"), mode("stats.json")], [mode("new"); 2]);
     for (name, kept) in [("out.png", 0o600), ("stats.json", 0o640)] {
-        fs::set_permissions(path.join(name), fs::Permissions::from_mode(kept)).expect("a mode");
+        set_mode(&path.join(name), kept);
     }
     fs::hard_link(path.join("out.png"), path.join("other.png")).expect("a hard link");
     let old = fs::metadata(path.join("other.png")).expect("a file").ino();
@@ -291,47 +302,35 @@ fn a_pipe_is_written_into() {
     let path = directory.path();
     for name in ["out.exr", "out.png"] {
         let pipe = path.join(name);
-        let made = std::process::Command::new("mkfifo").arg(&pipe).status();
-        assert!(made.expect("mkfifo").success());
+        make_fifo(&pipe);
         let reader = {
             let pipe = pipe.clone();
-            std::thread::spawn(move || fs::read(pipe).expect("what was written"))
+            std::thread::spawn(move || fs::read(pipe).expect("the image"))
         };
-        spherule(path).args(RENDER).arg(name).assert().success();
-        // Otherwise the reader waits for ever.
+        render(path, &[name]).success();
+        // If the pipe was replaced, the reader waits for ever.
         let about = fs::symlink_metadata(&pipe).expect("a pipe");
-        assert!(about.file_type().is_fifo(), "it was replaced");
+        assert!(about.file_type().is_fifo(), "the pipe was replaced");
         let read = reader.join().expect("a reader");
         image::load_from_memory(&read).expect("an image");
     }
-    let assert = spherule(path)
-        .args(RENDER)
-        .args(["plain.png", "--stats", "/dev/stdout"])
-        .assert()
-        .success();
-    let stats: serde_json::Value =
-        serde_json::from_slice(&assert.get_output().stdout).expect("JSON");
+    let assert = render(path, &["plain.png", "--stats", "/dev/stdout"]).success();
+    let stats = printed_json(&assert);
     assert_eq!(stats["width"], 16);
 }
 
-/// A full disk is called one, and takes nothing away.
+/// The message says that the disk is full, and no old file is lost.
 #[test]
-fn a_full_disk_is_said_and_loses_nothing() {
+fn a_full_disk_is_reported_and_loses_nothing() {
     let directory = with_scene();
     let path = directory.path();
     for name in ["out.exr", "out.png"] {
         symlink("/dev/full", path.join(name)).expect("a symlink");
-        spherule(path)
-            .args(RENDER)
-            .arg(name)
-            .assert()
+        render(path, &[name])
             .code(1)
             .stderr(contains("No space left on device").and(contains("another size").not()));
     }
-    spherule(path)
-        .args(RENDER)
-        .args(["fine.png", "--stats", "/dev/full"])
-        .assert()
+    render(path, &["fine.png", "--stats", "/dev/full"])
         .code(1)
         .stderr(contains(
             "/dev/full: cannot be written: No space left on device",
@@ -347,12 +346,14 @@ fn a_full_disk_is_said_and_loses_nothing() {
         command
     };
     if name_space(mounted.into()).ok().is_err() {
-        eprintln!("skipped the disk in a_full_disk_is_said_and_loses_nothing: no right to mount");
+        eprintln!(
+            "SKIPPED the disk in a_full_disk_is_reported_and_loses_nothing: no permission to mount"
+        );
         return;
     }
     let spherule = cargo_bin("spherule");
     let spherule = spherule.display();
-    // Unlike light, normals are hard to compress.
+    // Normals are hard to compress.
     for name in ["out.exr", "out.png"] {
         let script = format!(
             "{mounted} && {spherule} render scene.toml --device cpu --size 400x300 --shade normals -o room/{name}; \
@@ -364,7 +365,7 @@ fn a_full_disk_is_said_and_loses_nothing() {
             .stdout("1\nout.exr\nout.png\ns.json\nold\n")
             .stderr(contains("No space left on device").and(contains(" bytes) or less")));
     }
-    // No room for a byte.
+    // There is no room for a single byte.
     let script = format!(
         "{mounted} && head -c 60k /dev/zero > room/fill; {spherule} render scene.toml --device cpu -o fine.png \
          --stats room/s.json; echo $?; ls -A room; cat room/s.json"
@@ -376,12 +377,12 @@ fn a_full_disk_is_said_and_loses_nothing() {
         .stderr(contains("No space left on device"));
 }
 
-/// `ulimit -f`: an error, not the signal that it sends.
+/// A limit on file sizes (`ulimit -f`) ends in an error, not by its signal.
 #[test]
-fn a_limit_on_files_is_an_error() {
+fn a_limit_on_file_sizes_is_an_error() {
     let directory = with_scene();
     let path = directory.path();
-    fs::write(path.join("out.exr"), "old").expect("a file");
+    write_old(&path.join("out.exr"));
     let spherule = cargo_bin("spherule");
     let script = format!(
         "ulimit -f 1; exec {} render scene.toml --device cpu --size 400x300 -o out.exr",
@@ -394,10 +395,10 @@ fn a_limit_on_files_is_an_error() {
         .code(1)
         .stderr(contains("File too large"));
     assert_eq!(names(path), ["out.exr", "scene.toml"]);
-    assert_eq!(fs::read(path.join("out.exr")).expect("a file"), b"old");
+    assert_old(&path.join("out.exr"));
 }
 
-/// Starts a render into an image that takes a while to write, and returns while it is written.
+/// Starts a render of an image that takes a while to write, and returns while it is being written.
 fn writing(directory: &Path, output: &str) -> Child {
     let before = names(directory);
     let child = std::process::Command::new(cargo_bin("spherule"))
@@ -427,10 +428,7 @@ fn writing(directory: &Path, output: &str) -> Child {
 fn wait_for(condition: impl Fn() -> bool) {
     let started = Instant::now();
     while !condition() {
-        assert!(
-            started.elapsed() < Duration::from_secs(120),
-            "it never came"
-        );
+        assert!(started.elapsed() < Duration::from_secs(120), "timed out");
         std::thread::sleep(Duration::from_millis(1));
     }
 }
@@ -444,13 +442,14 @@ fn send(child: &Child, signal: &str) {
 
 const SIGNALS: [(&str, i32); 3] = [("INT", 130), ("TERM", 143), ("HUP", 129)];
 
-/// The first signal lets the image be written, the second does not; neither leaves anything behind.
+/// After the first signal the image is still written, after the second it is not. Neither leaves
+/// other files behind.
 #[test]
 fn signals_leave_nothing_behind() {
     for (signal, code) in SIGNALS {
         let directory = with_scene();
         let path = directory.path();
-        fs::write(path.join("out.exr"), "old").expect("a file");
+        write_old(&path.join("out.exr"));
         let mut child = writing(path, "out.exr");
         send(&child, signal);
         assert_eq!(child.wait().expect("it ends").code(), Some(code));
@@ -458,19 +457,19 @@ fn signals_leave_nothing_behind() {
         let image = image::open(path.join("out.exr")).expect("an image");
         assert_eq!(image.width(), 6000);
 
-        fs::write(path.join("out.exr"), "old").expect("a file");
+        write_old(&path.join("out.exr"));
         let mut child = writing(path, "out.exr");
         send(&child, signal);
-        // Signals of one kind that nobody has seen yet are one signal.
+        // Two pending signals of one kind would be merged into one.
         std::thread::sleep(Duration::from_millis(50));
         send(&child, signal);
         assert_eq!(child.wait().expect("it ends").code(), Some(code));
         assert_eq!(names(path), ["out.exr", "scene.toml"]);
-        assert_eq!(fs::read(path.join("out.exr")).expect("a file"), b"old");
+        assert_old(&path.join("out.exr"));
     }
 }
 
-/// What does not look for signals ends at the first.
+/// A measurement, which cannot be interrupted, ends at the first signal.
 #[test]
 fn a_signal_ends_a_measurement() {
     let directory = temporary();
@@ -481,7 +480,7 @@ fn a_signal_ends_a_measurement() {
             .stderr(Stdio::piped())
             .spawn()
             .expect("it starts");
-        // It has said that it measures.
+        // It prints a note when it begins to measure.
         let mut first = [0];
         let stderr = child.stderr.as_mut().expect("its errors");
         std::io::Read::read_exact(stderr, &mut first).expect("a note");
@@ -492,7 +491,7 @@ fn a_signal_ends_a_measurement() {
     }
 }
 
-/// What `nohup` ignores stays ignored.
+/// A signal that is ignored from the start, as under `nohup`, stays ignored.
 #[test]
 fn an_ignored_signal_stays_ignored() {
     let directory = with_scene();
@@ -510,7 +509,7 @@ fn an_ignored_signal_stays_ignored() {
     assert!(path.join("out.png").exists());
 }
 
-/// What a killed run leaves is removed by the next, what a live one has is not.
+/// A run removes the temporary files of killed runs, and not those of running ones.
 #[test]
 fn the_next_run_removes_what_a_killed_one_left() {
     let directory = with_scene();
@@ -518,25 +517,25 @@ fn the_next_run_removes_what_a_killed_one_left() {
     let mut killed = writing(path, "killed.exr");
     killed.kill().expect("SIGKILL");
     killed.wait().expect("it ends");
-    assert_eq!(names(path).len(), 2, "a temporary file is left");
+    assert_eq!(names(path).len(), 2, "the temporary file of the killed run");
     let mut live = writing(path, "live.exr");
-    assert_eq!(names(path).len(), 2, "of the live one only");
-    spherule(path)
-        .args(RENDER)
-        .arg("out.png")
-        .assert()
-        .success();
+    assert_eq!(
+        names(path).len(),
+        2,
+        "only the temporary file of the running one"
+    );
+    render(path, &["out.png"]).success();
     assert!(live.wait().expect("it ends").success());
     assert_eq!(names(path), ["live.exr", "out.png", "scene.toml"]);
 }
 
-/// The command's name for a shell.
+/// The command's path, quoted for a shell.
 fn quoted() -> String {
     format!("'{}'", cargo_bin("spherule").display())
 }
 
-/// What a shell makes of `script` in `directory`.
-fn shell(directory: &Path, script: &str) -> assert_cmd::assert::Assert {
+/// Runs `script` in bash, in `directory`.
+fn shell(directory: &Path, script: &str) -> Assert {
     Command::new("bash")
         .env_remove("SPHERULE_LOG")
         .current_dir(directory)
@@ -550,10 +549,10 @@ fn make_fifo(path: &Path) {
     assert!(made.expect("mkfifo").success());
 }
 
-/// A light scene, so that samples are taken.
+/// Tables of a scene with a sky, which is sampled.
 const LIGHT: &str = "[image]\nwidth = 16\nheight = 16\nsamples = 4\n[sky]\nhorizon = [1, 1, 1]\n";
 
-/// Each scene's files are checked against what is read for any of them, before any is written.
+/// The files of each scene are compared with the inputs of all scenes before any file is written.
 #[test]
 fn an_export_replaces_no_input() {
     let directory = with_scene();
@@ -593,7 +592,7 @@ fn an_export_replaces_no_input() {
             }
         }
     }
-    // Two of the files are one.
+    // Two of the outputs are one file.
     fs::create_dir(path.join("D")).expect("a folder");
     symlink("spheres.f32", path.join("D/meta.json")).expect("a link");
     spherule(path)
@@ -606,7 +605,7 @@ fn an_export_replaces_no_input() {
     assert_eq!(content(), before);
 }
 
-/// What a scene reads is known before another is measured.
+/// Every scene is read before the first is measured.
 #[test]
 fn a_later_scene_of_a_bench_is_checked_before_the_first_is_measured() {
     let directory = with_scene();
@@ -673,16 +672,17 @@ fn a_name_that_is_too_long_is_refused_before_the_work() {
     assert_eq!(names(path), ["scene.toml"]);
 }
 
-/// What is mounted by itself cannot be replaced, nor can another's file in a sticky directory.
+/// A file that is a mount point cannot be replaced by another file, nor can another user's file in
+/// a sticky directory.
 #[test]
 fn a_file_that_cannot_be_replaced_is_written_in_place() {
     let directory = with_scene();
     let path = directory.path();
-    fs::set_permissions(path, fs::Permissions::from_mode(0o755)).expect("permissions");
+    set_mode(path, 0o755);
     let spherule = quoted();
     fs::write(
         path.join("from.png"),
-        "old, and longer than the picture is ".repeat(999),
+        "old, and longer than the image is   ".repeat(999),
     )
     .expect("a file");
     fs::write(path.join("to.png"), "").expect("a file");
@@ -691,7 +691,9 @@ fn a_file_that_cannot_be_replaced_is_written_in_place() {
         .args(["-m", "sh", "-c", "mount --bind from.png to.png"])
         .ok();
     if mounted.is_err() {
-        eprintln!("skipped a_file_that_cannot_be_replaced_is_written_in_place: no right to mount");
+        eprintln!(
+            "SKIPPED a_file_that_cannot_be_replaced_is_written_in_place: no permission to mount"
+        );
         return;
     }
     let script = format!(
@@ -701,7 +703,7 @@ fn a_file_that_cannot_be_replaced_is_written_in_place() {
     image::open(path.join("from.png")).expect("an image");
     assert_eq!(names(path), ["from.png", "scene.toml", "to.png"]);
 
-    // Where there is no room for it twice, it is whole beside its place.
+    // If there is no room to write it twice, the whole image is kept in a file beside it.
     let script = format!(
         "mkdir room; unshare -m sh -c \"mount -t tmpfs -o size=2m tmpfs room && echo old > room/from.exr && \
          echo old > room/to.exr && mount --bind room/from.exr room/to.exr && \
@@ -719,9 +721,9 @@ fn a_file_that_cannot_be_replaced_is_written_in_place() {
 
     let sticky = path.join("sticky");
     fs::create_dir(&sticky).expect("a folder");
-    fs::write(sticky.join("out.png"), "old").expect("a file");
-    fs::set_permissions(sticky.join("out.png"), fs::Permissions::from_mode(0o666)).expect("rights");
-    fs::set_permissions(&sticky, fs::Permissions::from_mode(0o1777)).expect("permissions");
+    write_old(&sticky.join("out.png"));
+    set_mode(&sticky.join("out.png"), 0o666);
+    set_mode(&sticky, 0o1777);
     let script = format!(
         "test -x {spherule} && exec setpriv --reuid 65534 --regid 65534 --clear-groups {spherule} \
          render scene.toml --device cpu -o sticky/out.png"
@@ -731,7 +733,7 @@ fn a_file_that_cannot_be_replaced_is_written_in_place() {
         &format!("setpriv --reuid 65534 --regid 65534 --clear-groups {spherule} --version"),
     );
     if runs.try_success().is_err() {
-        eprintln!("skipped the sticky directory: nobody else may run the command");
+        eprintln!("SKIPPED the sticky directory: no other user may run the command");
         return;
     }
     shell(path, &script).success();
@@ -754,7 +756,7 @@ fn an_append_only_directory_is_refused_before_the_work() {
     };
     if !flag("+a") {
         eprintln!(
-            "skipped an_append_only_directory_is_refused_before_the_work: no right to make one"
+            "SKIPPED an_append_only_directory_is_refused_before_the_work: no permission to make one"
         );
         return;
     }
@@ -769,9 +771,9 @@ fn an_append_only_directory_is_refused_before_the_work() {
     assert!(names.is_empty(), "{names:?}");
 }
 
-/// Nothing that was computed is lost where it does not get its name.
+/// An image that cannot be given its name is kept under another.
 #[test]
-fn what_does_not_get_its_name_is_kept_under_another() {
+fn an_image_that_cannot_get_its_name_is_kept_under_another() {
     let directory = with_scene();
     let path = directory.path();
     let child = writing(path, "out.exr");
@@ -784,16 +786,12 @@ fn what_does_not_get_its_name_is_kept_under_another() {
         .collect();
     assert_eq!(kept.len(), 1, "{:?}", names(path));
     image::open(path.join(&kept[0])).expect("an image");
-    // The next run does not take it for what a killed one left.
-    spherule(path)
-        .args(RENDER)
-        .arg("next.png")
-        .assert()
-        .success();
+    // The next run does not remove it as a killed run's file.
+    render(path, &["next.png"]).success();
     assert!(path.join(&kept[0]).exists());
 }
 
-/// What a stream needs is there before the work, and an error names what is missing.
+/// What writing to a stream needs is checked before the work, and the error names what is missing.
 #[test]
 fn streams_are_checked_before_the_work() {
     let directory = with_scene();
@@ -816,12 +814,12 @@ fn streams_are_checked_before_the_work() {
     shell(path, &format!("{render} -o out.png --stats socket.png"))
         .code(1)
         .stderr(before().and(contains("Connection refused")));
-    // Standard output that is open for reading only takes nothing.
+    // Standard output is open for reading only.
     fs::write(path.join("read"), "").expect("a file");
     shell(path, &format!("{render} -o out.png --stats - 1<read"))
         .code(1)
         .stderr(before());
-    // What is read while it is made is whole, and its reader is not left waiting by a failure.
+    // A reader of a pipe gets the whole image, and does not wait for ever.
     shell(
         path,
         &format!("cat fifo.png > got & {render} -o fifo.png && wait"),
@@ -839,18 +837,14 @@ fn a_socket_is_written_into() {
     let reader = std::thread::spawn(move || {
         let (mut stream, _) = listener.accept().expect("a connection");
         let mut read = Vec::new();
-        std::io::Read::read_to_end(&mut stream, &mut read).expect("a picture");
+        std::io::Read::read_to_end(&mut stream, &mut read).expect("an image");
         read
     });
-    spherule(path)
-        .args(RENDER)
-        .arg("out.png")
-        .assert()
-        .success();
+    render(path, &["out.png"]).success();
     image::load_from_memory(&reader.join().expect("a reader")).expect("an image");
 }
 
-/// Standard output is a file as any other, whatever it is called.
+/// Standard output is compared with the other outputs and the inputs, whatever its name.
 #[test]
 fn standard_output_is_shared_with_nothing() {
     let directory = with_scene();
@@ -935,7 +929,7 @@ fn standard_output_is_shared_with_nothing() {
             assert!(written.is_empty(), "{script}");
         }
     }
-    // By another name it is the same.
+    // Its other names mean the same.
     for name in ["-", "/dev/stdout", "/dev/fd/1"] {
         for command in [
             format!("{accuracy} --scene far --json {name}"),
@@ -948,7 +942,7 @@ fn standard_output_is_shared_with_nothing() {
             }
         }
     }
-    // What takes anything may be shared, and what is another file is none of this.
+    // /dev/null may be shared, and another file is no conflict.
     shell(path, &format!("{render} -o a.png --stats - > /dev/null")).success();
     shell(
         path,
@@ -964,9 +958,9 @@ fn standard_output_is_shared_with_nothing() {
     .success();
 }
 
-/// Timers, limits and batch systems send these.
+/// Timers, limits and batch systems send these signals.
 #[test]
-fn other_signals_keep_the_picture_too() {
+fn other_signals_keep_the_image_too() {
     for (signal, code) in [
         ("XCPU", 152),
         ("USR1", 138),
@@ -979,7 +973,7 @@ fn other_signals_keep_the_picture_too() {
         let mut child = writing(path, "out.exr");
         send(&child, signal);
         if signal != "USR1" && signal != "USR2" {
-            // Timers go on.
+            // A timer sends its signal again.
             std::thread::sleep(Duration::from_millis(50));
             send(&child, signal);
         }
@@ -991,7 +985,7 @@ fn other_signals_keep_the_picture_too() {
         assert_eq!(names(path), ["out.exr", "scene.toml"]);
         image::open(path.join("out.exr")).expect("an image");
     }
-    // This one wants the process dead, as it is.
+    // This signal ends the process at once.
     let directory = with_scene();
     let path = directory.path();
     let mut child = writing(path, "out.exr");
@@ -1001,15 +995,15 @@ fn other_signals_keep_the_picture_too() {
         std::os::unix::process::ExitStatusExt::signal(&status),
         Some(3)
     );
-    // Where the system writes a core, there is one, too.
+    // The system may have written a core file.
     let mut names = names(path);
     names.retain(|name| !name.starts_with("core"));
     assert_eq!(names, ["scene.toml"]);
 }
 
-/// The processor time that a shell allows is over: the picture is kept.
+/// When the processor time of `ulimit -t` is over, the image so far is kept.
 #[test]
-fn a_limit_on_processor_time_keeps_the_picture() {
+fn a_limit_on_processor_time_keeps_the_image() {
     let directory = temporary();
     let path = directory.path();
     fs::write(path.join("light.toml"), format!("{LIGHT}{SPHERE}")).expect("a scene");
@@ -1023,9 +1017,9 @@ fn a_limit_on_processor_time_keeps_the_picture() {
     image::open(path.join("out.png")).expect("an image");
 }
 
-/// Nobody reads: the first signal ends what waits for it.
+/// A command that waits for a reader of its output ends at the first signal.
 #[test]
-fn a_signal_ends_what_waits_for_a_reader() {
+fn a_signal_ends_a_command_that_waits_for_a_reader() {
     let directory = with_scene();
     let path = directory.path();
     make_fifo(&path.join("fifo.png"));
@@ -1057,12 +1051,12 @@ fn a_signal_ends_what_waits_for_a_reader() {
             .spawn()
             .expect("it starts"),
     );
-    // It comes while the picture is made, which is kept, and which nobody reads.
+    // The signal comes during the render. The image so far is then written, and nobody reads it.
     fs::write(path.join("scene.toml"), format!("{LIGHT}{SPHERE}")).expect("a scene");
     let mut long = render("fifo.png");
     long.args(["--samples", "60000"]);
     ends(long.spawn().expect("it starts"));
-    // A pipe that is full.
+    // This pipe is full.
     symlink("/dev/stdout", path.join("so.png")).expect("a link");
     let mut child = render("so.png")
         .args(["--shade", "normals"])
@@ -1076,13 +1070,10 @@ fn a_signal_ends_what_waits_for_a_reader() {
 }
 
 #[test]
-fn room_that_is_missing_is_said_in_units_that_fit() {
+fn missing_room_is_reported_in_suitable_units() {
     let directory = with_scene();
     let path = directory.path();
-    spherule(path)
-        .args(RENDER)
-        .args(["fine.png", "--stats", "/dev/full"])
-        .assert()
+    render(path, &["fine.png", "--stats", "/dev/full"])
         .code(1)
         .stderr(contains(" bytes or less").and(contains("0.0").not()));
     let script = format!(
@@ -1091,7 +1082,7 @@ fn room_that_is_missing_is_said_in_units_that_fit() {
         quoted()
     );
     if Command::new("unshare").args(["-m", "true"]).ok().is_err() {
-        eprintln!("skipped the inodes: no right to mount");
+        eprintln!("SKIPPED the inodes: no permission to mount");
         return;
     }
     shell(path, &script)

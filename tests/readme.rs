@@ -1,4 +1,4 @@
-//! What the README shows is true: the scene, and the message for a mistake in it.
+//! The README's scene, its error message and its links are right.
 
 use std::path::Path;
 
@@ -16,7 +16,7 @@ fn block(language: &str) -> &'static str {
 }
 
 #[test]
-fn the_scene_is_one() {
+fn the_scene_is_read() {
     let scene = parse(Path::new("scenes/readme.toml"), block("toml").into()).expect("a scene");
     assert_eq!(scene.world.spheres.len(), 1 + 327);
     assert_eq!(scene.view.expect("a camera").vertical_fov, 40.0);
@@ -34,7 +34,7 @@ fn the_mistake_is_found_where_the_readme_says() {
 }
 
 #[test]
-fn every_page_it_names_exists() {
+fn every_linked_page_exists() {
     let links = README
         .split("](")
         .skip(1)

@@ -1,4 +1,5 @@
-//! The tree, the squares of camera rays and the tiles of brute force answer as testing every sphere does.
+//! The tree, the packets of camera rays and brute force by tiles find what testing every sphere
+//! finds.
 
 use glam::Vec3;
 use spherule::Scene;
@@ -9,7 +10,7 @@ use spherule::accuracy::oracle::Intersection;
 use spherule::bench::rays::{Kind, RaySets};
 use spherule::bench::scenes;
 use spherule::bench::verify::verify;
-use spherule::device::{Device, GpuOptions};
+use spherule::device::Device;
 use spherule::kernel::accel::brute::nearest_hit_in;
 use spherule::kernel::accel::node::Node;
 use spherule::kernel::accel::walk::nearest_hit_in_tree;
@@ -20,9 +21,9 @@ use spherule::scene::World;
 use spherule::trace::CpuTracer;
 
 mod common;
-use common::{all_adapters, gpus, open, skips};
+use common::{all_adapters, device, gpus, skips};
 
-/// Rays of every kind, on every rung: the tree against every sphere.
+/// Compares the tree with testing every sphere, for rays of every kind on every rung.
 #[test]
 fn the_tree_loses_no_hit() {
     for (name, rungs) in [
@@ -48,9 +49,10 @@ fn the_tree_loses_no_hit() {
     }
 }
 
-/// The hard cases and families among a million spheres: in the tree, by both walks, each ray finds what it finds
-/// without one, and on the certified rung nothing that is farther than its own sphere's exact hit. The first
-/// world is without the spheres of planets' size, which make all boxes wide.
+/// Puts the hard cases and families among a million spheres. With the tree, by both walks, each ray
+/// finds what it finds without; on the certified rung, no hit is farther than the exact hit with
+/// the ray's own sphere. The first world leaves out spheres of a planet's size, which make all
+/// boxes wide.
 #[test]
 fn hard_cases_are_hit_in_a_tree_of_a_million() {
     let (scene, _) = scenes::load("R1M", 16, 16).expect("a scene");
@@ -76,7 +78,7 @@ fn hard_cases_are_hit_in_a_tree_of_a_million() {
         let rays: Vec<Ray> = small.iter().map(|(ray, _)| *ray).collect();
         let tree = CpuTracer::new(&spheres, Acceleration::Tree);
         let order = tree.order();
-        // Of equals in one place it holds the first.
+        // Of equal spheres in one place, the tree holds only the first.
         assert!(order.len() > spheres.len() - spheres.len() / 100);
         let sorted: Vec<Sphere> = order.iter().map(|at| spheres[*at as usize]).collect();
         let (mut found, mut occluded) = (Vec::new(), Vec::new());
@@ -84,7 +86,7 @@ fn hard_cases_are_hit_in_a_tree_of_a_million() {
             tree.nearest(rung, &rays, &mut found);
             tree.occluded(rung, &rays, &mut occluded);
             let mut truth = Vec::new();
-            // Of equally near ones the first in the order of the leaves.
+            // Of equally near spheres, the first in the order of the leaves wins.
             CpuTracer::new(&sorted, Acceleration::BruteForce).nearest(rung, &rays, &mut truth);
             for (index, ray) in rays.iter().enumerate() {
                 let truth = truth[index];
@@ -106,15 +108,15 @@ fn hard_cases_are_hit_in_a_tree_of_a_million() {
     }
 }
 
-/// The same on every adapter; on the rungs below compensated a driver may fuse and reorder in one kernel
-/// other than in the other, which a software adapter does not.
+/// The same on every adapter. On the rungs below compensated, a driver may fuse and reorder
+/// differently in the two kernels; a software adapter does not.
 #[test]
 fn the_tree_loses_no_hit_on_a_gpu() {
     if skips("the_tree_loses_no_hit_on_a_gpu") {
         return;
     }
     for adapter in all_adapters() {
-        let device = Device::Gpu(Box::new(open(adapter, GpuOptions::default())));
+        let device = device(adapter);
         let (scene, reach) = scenes::load("S500", 32, 24).expect("a scene");
         let tracer = CpuTracer::new(&scene.world.spheres, Acceleration::Auto);
         let sets = RaySets::of(&scene, &tracer, reach).expect("rays");
@@ -134,9 +136,10 @@ fn the_tree_loses_no_hit_on_a_gpu() {
     }
 }
 
-/// Each pixel's depth is the nearest hit's t, with a tree and without, whatever part of a square is image.
+/// Each pixel's depth is the nearest hit's t, with a tree and without, whatever part of a packet is
+/// inside the image.
 #[test]
-fn squares_of_rays_find_what_single_rays_find() {
+fn packets_find_what_single_rays_find() {
     for (name, width, height) in [
         ("S2", 33, 17),
         ("S46", 41, 23),
@@ -163,20 +166,21 @@ fn squares_of_rays_find_what_single_rays_find() {
                     assert_eq!(pixel.depth(), hit.t, "{name} {} {at}", rung.name());
                     hits += usize::from(hit.is_some());
                 }
-                assert!(width == 1 || hits > 50, "{name}: {hits} hits tell little");
+                assert!(width == 1 || hits > 50, "{name}: only {hits} hits");
             }
         }
     }
 }
 
-/// The tiles of a GPU's brute force against the squares of the CPU.
+/// Compares brute force by tiles on a GPU with the packets on the CPU.
 #[test]
 fn tiles_find_what_the_cpu_finds() {
     if skips("tiles_find_what_the_cpu_finds") {
         return;
     }
-    // Neither side a multiple of a tile's; lists of several tiles, of several batches, that are due before the last, and not; axes that
-    // are not at right angles.
+    // No side is a multiple of a tile's. The cases have several tiles, several batches, lists that
+    // are full before the last batch and lists that are not, and camera axes that are not at right
+    // angles.
     let cases = [
         ("S500", 45, 37, 0.0),
         ("S500", 45, 37, 0.4),
@@ -200,7 +204,7 @@ fn tiles_find_what_the_cpu_finds() {
                 let world = cpu::Prepared::new(&scene.world, Acceleration::BruteForce);
                 let on_cpu = cpu::render(&launch, &world, settings, QUIET).expect("an image");
                 let hits = on_cpu.iter().filter(|pixel| pixel.is_hit()).count();
-                assert!(hits > 200, "{name}: {hits} hits tell little");
+                assert!(hits > 200, "{name}: only {hits} hits");
                 let differing = on_gpu
                     .iter()
                     .zip(&on_cpu)
@@ -216,7 +220,8 @@ fn tiles_find_what_the_cpu_finds() {
     }
 }
 
-/// 1,200 spheres in 600 places: a green one that comes first and a red one, which is the next or comes after all the green ones.
+/// 1,200 spheres in 600 places. In each place a green sphere comes first; a red one is next, or
+/// comes after all the green ones.
 fn equals(are_next: bool) -> World {
     let mut world = World::default();
     let green = world.add_material(Material::diffuse(Vec3::Y));
@@ -236,8 +241,8 @@ fn equals(are_next: bool) -> World {
     world
 }
 
-/// Of two spheres in one place the first of all is seen, in whatever order they are listed, in whatever launch, and if a list has
-/// no room for all.
+/// Of two spheres in one place, the one with the lower index is seen, whatever the order of the
+/// list and the number of launches, and even if the list has no room for all.
 #[test]
 fn tiles_take_the_first_of_equals() {
     if skips("tiles_take_the_first_of_equals") {
@@ -269,7 +274,7 @@ fn tiles_take_the_first_of_equals() {
                     colors.filter(|color| of(*color)).count()
                 };
                 let green = count(|color| color.y > 0.0);
-                assert!(2 * green > pixels.len(), "few are seen: {green}");
+                assert!(2 * green > pixels.len(), "only {green} green pixels");
                 let red = count(|color| color.x > 0.0);
                 assert_eq!(red, 0, "{width} × {height} on {}", gpu.name());
             }

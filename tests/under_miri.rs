@@ -1,5 +1,5 @@
-//! A little of everything that runs on a CPU without vector instructions, in numbers so small that Miri is done in minutes:
-//! `.ci/miri` runs it there. Elsewhere it takes no time.
+//! A little of everything that runs on a CPU without vector instructions, with numbers so small
+//! that Miri takes only minutes: `.ci/miri` runs it there. Elsewhere it takes no time.
 
 use glam::Vec3;
 use spherule::accel::{Acceleration, build, build_still};
@@ -23,7 +23,7 @@ fn world(random: &mut Random, count: usize) -> Vec<Sphere> {
         .collect()
 }
 
-/// Some as they come, some of any bits.
+/// Ordinary rays, and one in four of any bits.
 fn rays(random: &mut Random, count: usize) -> Vec<Ray> {
     (0..count)
         .map(|index| {
@@ -44,7 +44,7 @@ fn rays(random: &mut Random, count: usize) -> Vec<Ray> {
 }
 
 #[test]
-fn trees_are_grown_and_walked() {
+fn trees_are_built_and_walked() {
     let mut random = Random::new(3);
     let counts = if cfg!(miri) {
         [0, 1, 7, 40]
@@ -68,7 +68,7 @@ fn trees_are_grown_and_walked() {
                 let hit = nearest_hit_in_tree(code, ray, tree.nodes.tree(), &sorted[..]);
                 let any = is_occluded_in_tree(code, ray, tree.nodes.tree(), &sorted[..]);
                 let _ = work_in_tree(code, false, ray, tree.nodes.tree(), &sorted[..]);
-                // Spheres that the tree was not grown over: fewer, and none.
+                // The tree was not built over these spheres: one, and none.
                 let _ = nearest_hit_in_tree(code, ray, tree.nodes.tree(), &sorted[..1]);
                 let none = nearest_hit_in_tree(code, ray, tree.nodes.tree(), &sorted[..0]);
                 assert_eq!(none, Hit::NONE);
@@ -85,7 +85,7 @@ fn trees_are_grown_and_walked() {
 }
 
 #[test]
-fn trees_over_what_moves_are_grown() {
+fn trees_over_moving_spheres_are_built() {
     let mut random = Random::new(4);
     let spheres = world(&mut random, 60);
     let velocities: Vec<Vec3> = (0..40).map(|_| random.vec3(-1.0, 1.0)).collect();
@@ -134,7 +134,7 @@ fn images_of_every_kind_are_rendered() {
         intensity: Vec3::ONE,
     });
     assert!(lit.effects().any(Effects::GLASS));
-    // The table of rough metal alone takes Miri longer than all else.
+    // The table for rough metal alone takes Miri longer than everything else.
     if !cfg!(miri) {
         render(&lit, Shading::Lit, &Device::Cpu, QUIET).expect("an image");
     }

@@ -1,16 +1,16 @@
-//! A render under the Vulkan validation layers, which must have nothing to say.
+//! Renders under the Vulkan validation layers, which must report nothing.
 //!
-//! In a process of its own, because the layers report to the global logger.
+//! This test has its own process, because the layers report to the global logger.
 
 mod common;
 
 use std::sync::{Mutex, PoisonError};
 
-use common::{all_adapters, open, skips};
+use common::{all_adapters, device, open, skips};
 use spherule::device::GpuOptions;
 use spherule::kernel::{Ray, Shading};
 use spherule::render::{QUIET, render};
-use spherule::{Device, Scene, wgpu};
+use spherule::{Scene, wgpu};
 
 static MESSAGES: Mutex<Vec<String>> = Mutex::new(Vec::new());
 static LAYER_MISSING: Mutex<bool> = Mutex::new(false);
@@ -46,16 +46,16 @@ fn take_messages() -> Vec<String> {
 }
 
 #[test]
-fn the_validation_layers_have_nothing_to_say() {
-    // wgpu reads the level when the instance is made, and turns the layers on by these.
-    // SAFETY: this process has one test, and no other thread reads the environment yet.
+fn the_validation_layers_report_nothing() {
+    // wgpu reads the log level when the instance is created, and enables the layers by these
+    // variables. SAFETY: this process has one test, and no other thread reads the environment yet.
     unsafe {
         std::env::set_var("WGPU_VALIDATION", "1");
         std::env::set_var("WGPU_DEBUG", "1");
     }
     log::set_logger(&Recorder).expect("no other logger");
     log::set_max_level(log::LevelFilter::Debug);
-    if skips("the_validation_layers_have_nothing_to_say") {
+    if skips("the_validation_layers_report_nothing") {
         return;
     }
     if *LAYER_MISSING.lock().unwrap_or_else(PoisonError::into_inner) {
@@ -64,7 +64,7 @@ fn the_validation_layers_have_nothing_to_say() {
             "SPHERULE_REQUIRE_GPU is set and there are no validation layers"
         );
         eprintln!(
-            "SKIPPED: there are no validation layers; Debian's vulkan-validationlayers brings them"
+            "SKIPPED: there are no validation layers; Debian's package vulkan-validationlayers has them"
         );
         return;
     }
@@ -72,7 +72,7 @@ fn the_validation_layers_have_nothing_to_say() {
     let mut scene = Scene::load("scenes/two-spheres.toml").expect("the scene");
     (scene.width, scene.height) = (64, 36);
     for adapter in all_adapters() {
-        let device = Device::Gpu(Box::new(open(adapter, GpuOptions::default())));
+        let device = device(adapter);
         for shading in [Shading::Lit, Shading::Depth] {
             render(&scene, shading, &device, QUIET).expect("it renders");
         }
@@ -80,8 +80,8 @@ fn the_validation_layers_have_nothing_to_say() {
         assert!(said.is_empty(), "{}: {said:#?}", adapter.get_info().name);
     }
 
-    // The twin: a module whose SPIR-V is wrong must make the layers speak. Its `Offset` of
-    // Ray::direction is moved off its 16-byte boundary.
+    // The twin: the layers must report a module whose SPIR-V is wrong. Its `Offset` of
+    // `Ray::direction` is moved off the 16-byte boundary.
     for adapter in all_adapters() {
         if !adapter
             .features()
@@ -110,14 +110,14 @@ fn the_validation_layers_have_nothing_to_say() {
         let module =
             spherule::device::Module::from_bytes("misaligned", bytemuck::cast_slice(&words))
                 .expect("the structure is sound");
-        // SAFETY: a member that is not aligned is all that is wrong, and the layers stand before
-        // the driver.
+        // SAFETY: only a member's alignment is wrong, and the layers check the module before the
+        // driver.
         let module = unsafe { module.trusted() };
         use spherule::device::Access::{Read, ReadWrite};
         let _ = gpu.kernel(&module, "trace_rays", &[Read, Read, ReadWrite]);
         assert!(
             !take_messages().is_empty(),
-            "the layers said nothing of a misaligned member"
+            "the layers did not report a misaligned member"
         );
     }
 }

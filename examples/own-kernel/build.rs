@@ -1,4 +1,4 @@
-//! Compiles the kernel with rust-gpu. The first run installs rust-gpu's nightly toolchain and
+//! Compiles the kernel with rust-gpu. The first build installs rust-gpu's nightly toolchain and
 //! builds its compiler backend, which takes about ten minutes.
 
 use std::path::Path;

@@ -8,9 +8,9 @@ use crate::ray::Ray;
 
 /// A pinhole camera with square pixels.
 ///
-/// The image plane is at distance one: `forward` is a unit vector, `right` and `up` are half
-/// the image's width and height there. The parameter of a hit along a ray from
-/// [`Camera::ray`] is therefore the hit's depth along `forward`, in scene units.
+/// The image plane is at distance one: `forward` is a unit vector, and `right` and `up` are half
+/// the image's width and height there. So the parameter of a hit along a ray from [`Camera::ray`]
+/// is the hit's depth along `forward`, in scene units.
 ///
 /// 64 bytes, each vector on a 16-byte boundary.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
@@ -22,16 +22,16 @@ pub struct Camera {
     /// The unit vector from the eye to the centre of the image.
     pub forward: Vec3,
     padding_forward: f32,
-    /// From the centre of the image plane to the middle of its right edge.
+    /// The vector from the centre of the image plane to the middle of its right edge.
     pub right: Vec3,
     padding_right: f32,
-    /// From the centre of the image plane to the middle of its upper edge.
+    /// The vector from the centre of the image plane to the middle of its upper edge.
     pub up: Vec3,
     padding_up: f32,
 }
 
 impl Camera {
-    /// A camera from its parts; see the fields for what each must be.
+    /// A camera from its parts, which must be as the fields say.
     #[must_use]
     pub const fn from_basis(eye: Vec3, forward: Vec3, right: Vec3, up: Vec3) -> Self {
         Self {
@@ -46,7 +46,7 @@ impl Camera {
         }
     }
 
-    /// The ray through `film`, where (−1, 1) is the upper left corner of the image, (0, 0) its
+    /// The ray through the point `film`: (−1, 1) is the upper left corner of the image, (0, 0) its
     /// centre and (1, −1) its lower right corner.
     ///
     /// The ray starts just after the eye (`t_min` is the smallest normal f32, so that a depth
@@ -70,12 +70,12 @@ impl Camera {
         self.ray(Self::film(pixel, size))
     }
 
-    /// Where the centre of `pixel` is, as [`Camera::ray`] counts it.
+    /// The centre of `pixel` in the coordinates of [`Camera::ray`].
     #[inline]
     #[must_use]
     pub fn film(pixel: UVec2, size: UVec2) -> Vec2 {
-        // Written with integers up to the one division, so that the centre of an odd-sized image
-        // is exactly (0, 0) and opposite pixels are exact mirror images. Below 2²³ pixels a side
+        // Computed in integers up to the one division, so that the centre of an image of odd size
+        // is exactly (0, 0) and opposite pixels are exact mirror images. Below 2²³ pixels a side,
         // the integers are exact in f32.
         let twice = |middle: u32| middle.wrapping_mul(2).wrapping_add(1) as f32;
         let x = twice(pixel.x) - size.x as f32;
@@ -84,7 +84,7 @@ impl Camera {
     }
 }
 
-/// Making a camera out of what a person says about one; for the host.
+/// Builds a camera from what a scene says about it; for the host.
 #[cfg(not(target_arch = "spirv"))]
 mod look_at {
     use glam::{DVec3, Vec3};
@@ -92,12 +92,12 @@ mod look_at {
     use super::Camera;
 
     impl Camera {
-        /// A camera at `eye` that looks at `target`, with `up` pointing upwards in the image,
-        /// seeing `vertical_fov` radians between its lower and upper edge, for an image that
-        /// is `aspect` times as wide as high. Computed in f64.
+        /// A camera at `eye` that looks at `target`, with `up` pointing upwards in the image.
+        /// `vertical_fov` is the angle in radians between the image's lower and upper edge, and
+        /// `aspect` is its width divided by its height. Computed in f64.
         ///
-        /// `None` where there is no such camera: `eye` equals `target`, `up` is zero or along
-        /// the view, the field of view is not between zero and π, or a number is not finite.
+        /// `None` if `eye` equals `target`, `up` is zero or along the view, `vertical_fov` is not
+        /// between zero and π, `aspect` is not positive, or a number is not finite.
         #[must_use]
         pub fn look_at(
             eye: Vec3,
@@ -115,8 +115,8 @@ mod look_at {
             let forward = (target.as_dvec3() - eye.as_dvec3()).try_normalize()?;
             let up = up.as_dvec3().try_normalize()?;
             let right = forward.cross(up);
-            // Less than about a millionth of a degree between the view and `up`: the roll of the
-            // camera would be decided by rounding.
+            // With less than about a millionth of a degree between the view and `up`, rounding
+            // would decide the camera's roll.
             if right.length_squared() < 1e-16 {
                 return None;
             }

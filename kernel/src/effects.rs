@@ -1,7 +1,8 @@
 //! [`Effects`]: which effects exist in a compiled pipeline. Runs on the GPU and on the CPU.
 //!
 //! The set is fixed before the kernel is compiled: on the GPU it is a specialisation constant, on
-//! the CPU a constant that each loop is compiled for. What is not in it is not in the machine code.
+//! the CPU a constant that each loop is compiled for. Effects that are not in the set are not in
+//! the machine code.
 
 use bytemuck::{Pod, Zeroable};
 
@@ -26,15 +27,15 @@ macro_rules! effects {
 }
 
 effects! {
-    /// More than one sample a pixel, each at a place of its own in it.
+    /// More than one sample a pixel, each at its own place in the pixel.
     ANTIALIASING = 0, "antialiasing";
     /// A lamp at the eye, for scenes that have no light of their own.
     HEADLAMP = 1, "headlamp";
-    /// Points of light and a sun without extent.
+    /// Point lights and a sun without extent.
     HARD_SHADOWS = 2, "hard-shadows";
-    /// Spheres of light and a sun of some extent, sampled by solid angle.
+    /// Spherical lights and a sun with an extent, sampled by solid angle.
     SOFT_SHADOWS = 3, "soft-shadows";
-    /// Ambient light, darker where something is near.
+    /// Ambient light that is darker where something is near.
     AMBIENT_OCCLUSION = 4, "ambient-occlusion";
     /// Metal as smooth as a mirror.
     MIRROR = 5, "mirror";
@@ -42,11 +43,11 @@ effects! {
     ROUGH_METAL = 6, "rough-metal";
     /// Glass, solid or hollow.
     GLASS = 7, "glass";
-    /// Spheres that glow.
+    /// Spheres that emit light.
     EMISSION = 8, "emission";
-    /// Light that diffuse surfaces give to each other.
+    /// Light that diffuse surfaces reflect onto each other.
     INTERREFLECTION = 9, "interreflection";
-    /// A lens of some extent: what is out of focus blurs.
+    /// A lens with an extent: what is out of focus is blurred.
     DEFOCUS = 10, "defocus";
     /// Spheres that move while the shutter is open.
     MOTION_BLUR = 11, "motion-blur";
@@ -58,37 +59,38 @@ effects! {
     SUN = 14, "sun";
     /// An image of the surroundings as the sky.
     ENVIRONMENT = 15, "environment";
-    /// A background that lets through what is behind the image.
+    /// A background that is transparent in the image.
     TRANSPARENT_BACKGROUND = 16, "transparent-background";
 }
 
 impl Effects {
-    /// The effects that this build of the kernel holds at all. Every one, unless the environment
-    /// variable `SPHERULE_EFFECTS` gave a number of bits when it was compiled: then the code of the
-    /// others is deleted from the source's first translation on, which is what a specialised
-    /// pipeline is measured against.
+    /// The effects that this build of the kernel has. That is every effect, unless the environment
+    /// variable `SPHERULE_EFFECTS` gave the bits of a set when it was compiled. Then the code of
+    /// all other effects is left out from the first compilation on; specialised pipelines are
+    /// measured against this.
     pub const BUILT: Self = match option_env!("SPHERULE_EFFECTS") {
         None => Self::ALL,
         Some(bits) => Self(Self::ALL.0 & parse(bits)),
     };
 
-    /// The specialisation constant that holds the set that the pipeline is compiled for.
+    /// The number of the specialisation constant that holds the set that the pipeline is compiled
+    /// for.
     pub const SPEC_ID: u32 = 2;
-    /// The specialisation constant that is 1 where a pipeline is for scenes that call for exactly
-    /// that set, and 0 where the launch says which of them the scene calls for.
+    /// The number of the specialisation constant that is 1 if the pipeline is for scenes that call
+    /// for exactly that set, and 0 if the launch says which of them the scene calls for.
     pub const IS_EXACT_SPEC_ID: u32 = 3;
 
     /// No effect.
     pub const NONE: Self = Self(0);
 
-    /// The set with these bits.
+    /// The set with these bits; bits that stand for no effect are dropped.
     #[inline]
     #[must_use]
     pub const fn from_bits(bits: u32) -> Self {
         Self(bits & Self::ALL.0)
     }
 
-    /// The set as the kernel's constant.
+    /// The bits of the set, the value of the specialisation constant.
     #[inline]
     #[must_use]
     pub const fn to_bits(self) -> u32 {
@@ -123,7 +125,7 @@ impl Effects {
         Self(self.0 & !effects.0)
     }
 
-    /// Whether there is none.
+    /// Whether the set is empty.
     #[inline]
     #[must_use]
     pub const fn is_empty(self) -> bool {
@@ -131,7 +133,7 @@ impl Effects {
     }
 }
 
-/// A decimal number; what is no digit counts for nothing.
+/// Reads a decimal number; characters that are not digits are skipped.
 const fn parse(text: &str) -> u32 {
     let bytes = text.as_bytes();
     let mut number: u32 = 0;

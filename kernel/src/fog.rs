@@ -1,8 +1,8 @@
 //! [`Fog`]: a ball of a homogeneous medium. Runs on the GPU and on the CPU.
 //!
-//! Light goes a distance of the density σ e^(−σ s) until it is scattered or absorbed, and is
-//! scattered by the phase function of L. G. Henyey and J. L. Greenstein, Diffuse radiation in the
-//! galaxy, Astrophys. J. 93 (1941).
+//! The distance s that light goes until it is scattered or absorbed has the density σ e^(−σ s).
+//! Light is scattered by the phase function of L. G. Henyey and J. L. Greenstein, Diffuse radiation
+//! in the galaxy, Astrophys. J. 93 (1941).
 
 use core::f32::consts::{FRAC_1_PI, TAU};
 
@@ -21,23 +21,25 @@ use crate::surface::unit;
 pub struct Fog {
     /// The centre of the ball, in scene units.
     pub center: Vec3,
-    /// Its radius.
+    /// The radius of the ball, in scene units.
     pub radius: f32,
-    /// The share of the light that is scattered rather than absorbed, each channel.
+    /// For each channel, the share of the light that is scattered rather than absorbed.
     pub albedo: Vec3,
-    /// σ: the chance of meeting the medium, per scene unit.
+    /// The extinction coefficient σ: the probability per scene unit that light is scattered or
+    /// absorbed.
     pub extinction: f32,
-    /// g: the mean cosine between light before and after; 0 is the same in all directions.
+    /// g: the mean cosine of the angle by which light is scattered; 0 scatters equally in all
+    /// directions.
     pub anisotropy: f32,
-    /// Nothing; it keeps what follows where the GPU's layout has it.
+    /// Unused; it keeps what follows at the offset that the GPU's layout requires.
     pub padding: u32,
-    /// Nothing, as the field before.
+    /// Unused, as the field above.
     pub padding_end: UVec2,
 }
 
 impl Fog {
-    /// Where a ray with a unit direction is in the fog, up to `t_max`: from and to. Empty where the
-    /// first is not below the second.
+    /// The interval (from, to) of a ray in the fog, up to `t_max`. The direction must be a unit
+    /// vector. The interval is empty if `from` is not below `to`.
     #[inline]
     #[must_use]
     pub fn span(&self, origin: Vec3, direction: Vec3, t_max: f32) -> (f32, f32) {
@@ -52,7 +54,7 @@ impl Fog {
         ((-b - half).max(0.0), (-b + half).min(t_max))
     }
 
-    /// The share of light that crosses the fog along the ray up to `t_max`.
+    /// The share of light that passes through the fog along the ray up to `t_max`.
     #[inline]
     #[must_use]
     pub fn transmittance(&self, origin: Vec3, direction: Vec3, t_max: f32) -> f32 {
@@ -60,14 +62,15 @@ impl Fog {
         (-self.extinction * (to - from).max(0.0)).exp()
     }
 
-    /// How far light goes in the fog until it meets it.
+    /// Samples how far light goes in the fog until it is scattered or absorbed, in scene units; `u`
+    /// is uniform in [0, 1).
     #[inline]
     #[must_use]
     pub fn sample_distance(&self, u: f32) -> f32 {
         -(1.0 - u).ln() / self.extinction
     }
 
-    /// The phase function, which is also the density of [`Fog::sample`].
+    /// The phase function at this cosine, per steradian. It is also the density of [`Fog::sample`].
     #[inline]
     #[must_use]
     pub fn phase(&self, cosine: f32) -> f32 {
@@ -76,7 +79,7 @@ impl Fog {
         0.25 * FRAC_1_PI * (1.0 - g * g) / (base * base.sqrt())
     }
 
-    /// A direction into which light that comes along `direction` is scattered.
+    /// Samples the direction into which light that travels along `direction` is scattered.
     #[inline]
     #[must_use]
     pub fn sample(&self, direction: Vec3, u: Vec2) -> Vec3 {

@@ -1,17 +1,17 @@
-//! [`Hit`]: what a ray found. Runs on the GPU and on the CPU.
+//! [`Hit`]: the nearest intersection of a ray. Runs on the GPU and on the CPU.
 
 use bytemuck::{Pod, Zeroable};
 
-/// The nearest intersection of a ray with a world of spheres, or none.
+/// The nearest intersection of a ray with a world of spheres, or no hit.
 ///
-/// "None" is said with finite numbers, because shader compilers may assume that infinities and
-/// NaNs do not occur.
+/// No hit is encoded in finite numbers, because shader compilers may assume that infinities and NaN
+/// do not occur.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Hit {
-    /// The parameter along the ray, or [`Hit::NONE_T`].
+    /// The parameter along the ray; [`Hit::NONE_T`] for no hit.
     pub t: f32,
-    /// The index of the sphere, or [`Hit::NONE_SPHERE`].
+    /// The index of the sphere; [`Hit::NONE_SPHERE`] for no hit.
     pub sphere: u32,
 }
 

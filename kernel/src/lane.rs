@@ -1,9 +1,10 @@
 //! [`Lane`]: the numbers that formulas are written in. Runs on the GPU and on the CPU.
 //!
-//! A formula over `L: Lane` is one text for all processors: `f32` and `f64` on the GPU and for single rays, vectors of
-//! either in the CPU's packets, which the host implements the trait for. Each operation is rounded as IEEE 754 says, and
-//! none is fused with another, so that a lane of a vector has the very bits of a single number; but for
-//! [`Lane::mul_add_rough`], which is for bounds.
+//! A formula over `L: Lane` is written once for all processors: `L` is `f32` or `f64` on the GPU
+//! and for single rays, and a vector of either in the CPU's packets. The host implements the trait
+//! for vectors. Each operation is rounded as IEEE 754 says, and none is fused with another, so that
+//! a lane of a vector has the same bits as a single number. The exceptions are
+//! [`Lane::mul_add_rough`] and [`Lane::mul_sub_rough`], which are for bounds.
 
 use core::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
@@ -18,19 +19,19 @@ pub trait Lane:
     + Div<Output = Self>
     + Neg<Output = Self>
 {
-    /// What a comparison gives: a `bool` for each number.
+    /// The result of a comparison: a `bool` for each number.
     type Mask: Copy
         + BitAnd<Output = Self::Mask>
         + BitOr<Output = Self::Mask>
         + Not<Output = Self::Mask>;
 
-    /// The same number in each lane, as many as `self` has.
+    /// This number in each lane; `self` says only how many lanes there are.
     fn splat(self, value: f32) -> Self;
     /// The absolute value.
     fn abs(self) -> Self;
     /// The square root; NaN below zero.
     fn sqrt(self) -> Self;
-    /// `self < other`; false for NaN, as in the three below.
+    /// `self < other`; false for NaN, as are the three below.
     fn simd_lt(self, other: Self) -> Self::Mask;
     /// `self ≤ other`.
     fn simd_le(self, other: Self) -> Self::Mask;
@@ -38,7 +39,8 @@ pub trait Lane:
     fn simd_gt(self, other: Self) -> Self::Mask;
     /// `self ≥ other`.
     fn simd_ge(self, other: Self) -> Self::Mask;
-    /// `self · factor + term`, rounded once or twice, whichever is faster: for bounds that hold either way.
+    /// `self · factor + term`, rounded once or twice, whichever is faster; for bounds that hold
+    /// either way.
     #[inline(always)]
     fn mul_add_rough(self, factor: Self, term: Self) -> Self {
         self * factor + term
@@ -50,12 +52,13 @@ pub trait Lane:
     }
     /// `yes` where the mask is true, else `no`.
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
-    /// As [`Lane::select`], of what single numbers compute only where it is asked for: a processor foretells most branches.
+    /// As [`Lane::select`], for arguments that single numbers compute only if they are selected: a
+    /// processor predicts most branches.
     #[inline(always)]
     fn choose(mask: Self::Mask, yes: impl FnOnce() -> Self, no: impl FnOnce() -> Self) -> Self {
         Self::select(mask, yes(), no())
     }
-    /// As [`Lane::choose`], of two.
+    /// As [`Lane::choose`], for pairs.
     #[inline(always)]
     fn choose_pair(
         mask: Self::Mask,
@@ -190,7 +193,7 @@ impl<L: Lane> Lane3<L> {
 }
 
 impl Lane3<f32> {
-    /// Of a vector.
+    /// The coordinates of a vector.
     #[inline(always)]
     #[must_use]
     pub fn of(vector: Vec3) -> Self {

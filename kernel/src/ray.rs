@@ -1,4 +1,4 @@
-//! [`Ray`]: a half-open piece of a line. Runs on the GPU and on the CPU.
+//! [`Ray`]: a half-open interval of a line. Runs on the GPU and on the CPU.
 
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
@@ -7,20 +7,20 @@ use crate::hit::Hit;
 
 /// The points `origin + t · direction` for `t_min ≤ t < t_max`.
 ///
-/// The interval is half-open so that "nearer than what was found so far" is one comparison, and
-/// so that the first of two equally near spheres wins whatever the order of the comparison.
+/// The interval is half-open so that "nearer than what was found so far" is one comparison, and so
+/// that the first of two equally near spheres wins.
 ///
-/// 32 bytes, with each vector on a 16-byte boundary as std430 wants it.
+/// 32 bytes, with each vector on a 16-byte boundary as std430 requires.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Ray {
     /// Where the ray starts, in scene units.
     pub origin: Vec3,
-    /// The smallest `t` that counts, inclusive.
+    /// The start of the interval of `t`, inclusive.
     pub t_min: f32,
-    /// Where the ray goes. It need not be a unit vector; a zero vector hits nothing.
+    /// The direction. It need not be a unit vector; a ray with a zero vector hits nothing.
     pub direction: Vec3,
-    /// The bound on `t`, exclusive.
+    /// The end of the interval of `t`, exclusive.
     pub t_max: f32,
 }
 
@@ -32,7 +32,7 @@ impl Ray {
         Self::within(origin, direction, 0.0, f32::MAX)
     }
 
-    /// The piece of the line with `t_min ≤ t < t_max`.
+    /// The part of the line with `t_min ≤ t < t_max`.
     #[inline]
     #[must_use]
     pub fn within(origin: Vec3, direction: Vec3, t_min: f32, t_max: f32) -> Self {
@@ -44,8 +44,8 @@ impl Ray {
         }
     }
 
-    /// The bound on `t`, and at most [`Hit::NONE_T`]: a ray whose `t_max` is infinite ends
-    /// where no hit could be told from none.
+    /// The end of the interval of `t`, cut to [`Hit::NONE_T`], because a hit there could not be
+    /// told from no hit.
     #[inline]
     #[must_use]
     pub fn end(&self) -> f32 {

@@ -5,7 +5,7 @@ use glam::{Vec3, Vec4};
 
 /// A sphere, stored as one [`Vec4`] so that a GPU fetches it with a single 16-byte load.
 ///
-/// The host makes the world out of this very type and uploads it as it is.
+/// The host builds the world from this type and uploads it unchanged.
 ///
 /// ```
 /// use spherule_kernel::{Ray, Sphere, glam::Vec3};
@@ -23,9 +23,8 @@ pub struct Sphere {
 impl Sphere {
     /// A sphere with this centre and this radius, both in scene units.
     ///
-    /// The radius is meant to be positive. [`Sphere::is_valid`] says whether a sphere is one
-    /// that the kernel is made for; one that is not is still safe to trace, and is either
-    /// missed or hit like its mirror image of positive radius.
+    /// The radius should be positive; [`Sphere::is_valid`] checks. A sphere that is not valid is
+    /// still safe to trace: rays either miss it, or hit it as if its radius were positive.
     #[inline]
     #[must_use]
     pub const fn new(center: Vec3, radius: f32) -> Self {
@@ -48,7 +47,7 @@ impl Sphere {
         self.center_radius.w
     }
 
-    /// Centre and radius, as one load.
+    /// Centre (x, y, z) and radius (w) as one vector.
     #[inline]
     #[must_use]
     pub const fn to_vec4(self) -> Vec4 {

@@ -1,7 +1,7 @@
-//! What the GPU tests share: every adapter of this machine, opened once.
+//! Shared by the GPU tests: every adapter of this machine, opened once.
 //!
-//! A machine without any adapter skips these tests, each with a line that says so; with
-//! `SPHERULE_REQUIRE_GPU=1` it fails them instead.
+//! On a machine without an adapter these tests are skipped, each with a line that says so. With
+//! `SPHERULE_REQUIRE_GPU=1` they fail instead.
 
 #![allow(
     dead_code,
@@ -11,7 +11,7 @@
 use std::sync::OnceLock;
 
 use spherule::device::adapter::{adapters, instance};
-use spherule::device::{Gpu, GpuOptions};
+use spherule::device::{Device, Gpu, GpuOptions};
 use spherule::wgpu;
 
 /// Every adapter of this machine.
@@ -26,7 +26,7 @@ pub fn all_adapters() -> &'static [wgpu::Adapter] {
     })
 }
 
-/// Every adapter of this machine, opened with SPIR-V going straight to the driver.
+/// Every adapter of this machine, opened so that SPIR-V goes straight to the driver.
 pub fn gpus() -> &'static [Gpu] {
     static GPUS: OnceLock<Vec<Gpu>> = OnceLock::new();
     GPUS.get_or_init(|| {
@@ -41,7 +41,29 @@ pub fn open(adapter: &wgpu::Adapter, options: GpuOptions) -> Gpu {
     Gpu::from_adapter(adapter, options).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Whether there is no adapter, after saying that `test` is skipped.
+/// The adapter as a device of its own, with the default options.
+pub fn device(adapter: &wgpu::Adapter) -> Device {
+    Device::Gpu(Box::new(open(adapter, GpuOptions::default())))
+}
+
+pub fn open_with_limits(adapter: &wgpu::Adapter, limits: wgpu::Limits) -> Gpu {
+    let options = GpuOptions {
+        limits: Some(limits),
+        ..GpuOptions::default()
+    };
+    open(adapter, options)
+}
+
+/// The adapter, opened so that modules go through naga.
+pub fn open_through_naga(adapter: &wgpu::Adapter) -> Gpu {
+    let options = GpuOptions {
+        through_naga: true,
+        ..GpuOptions::default()
+    };
+    open(adapter, options)
+}
+
+/// Whether there is no adapter. If so, says that `test` is skipped.
 pub fn skips(test: &str) -> bool {
     let none = all_adapters().is_empty();
     if none {
@@ -50,13 +72,13 @@ pub fn skips(test: &str) -> bool {
             "{test}: SPHERULE_REQUIRE_GPU is set and there is no adapter"
         );
         eprintln!(
-            "SKIPPED {test}: there is no GPU adapter; Debian's mesa-vulkan-drivers brings a software one"
+            "SKIPPED {test}: there is no GPU adapter; Debian's package mesa-vulkan-drivers has a software one"
         );
     }
     none
 }
 
-/// An adapter that runs nothing but checks every call.
+/// An adapter that checks every call and runs nothing.
 pub fn noop_adapter(features: wgpu::Features) -> wgpu::Adapter {
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
         backends: wgpu::Backends::NOOP,

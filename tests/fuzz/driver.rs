@@ -1,8 +1,10 @@
-//! What every fuzz target shares: the committed corpus is run as it is, and then mutated until the time is over.
+//! Shared by all fuzz targets: runs the committed corpus unchanged, and then mutates it until the
+//! time is over.
 //!
-//! `SPHERULE_FUZZ_SECONDS` is that time for each target, 2 s if it is not set; `SPHERULE_FUZZ_SEED` is another run for each number.
-//! An input with an outcome that none had before joins the corpus for the rest of the run, which stands in for a compiler that
-//! counts branches. One that fails a target is written to a file that the panic names: put it into the corpus with its mend.
+//! `SPHERULE_FUZZ_SECONDS` is the time for each target, 2 s by default. `SPHERULE_FUZZ_SEED`
+//! chooses the random numbers. An input with a new kind of outcome joins the corpus for the rest of
+//! the run; this stands in for coverage that a compiler measures. An input that fails a target is
+//! written to a file whose name is printed: add it to the corpus together with the fix.
 
 use std::collections::HashSet;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
@@ -12,22 +14,22 @@ use std::time::{Duration, Instant};
 
 use spherule::random::Random;
 
-/// An input that takes longer hangs. They are small, and take milliseconds.
+/// An input that takes longer than this hangs. Inputs are small and take milliseconds.
 const HANGS: Duration = Duration::from_secs(20);
-/// The most inputs that a run keeps.
+/// The largest number of inputs in a run's corpus.
 const MOST: usize = 2000;
-/// The largest input that mutations make.
+/// The largest input that mutations make, in bytes.
 const LARGEST: usize = 1 << 16;
 
-/// Bytes that inputs are made of.
+/// The words that mutations put into inputs.
 pub struct Words {
-    /// What is put in.
+    /// The words.
     pub words: &'static [&'static [u8]],
-    /// Whether inputs are text, of lines and numbers.
+    /// Whether inputs are text with lines and numbers.
     pub is_text: bool,
 }
 
-/// Runs a target on its corpus and on what becomes of that. `target` says what kind of outcome an input has.
+/// Runs a target on its corpus and on mutations of it. `target` returns the outcome of an input.
 pub fn fuzz(name: &str, words: &Words, target: impl Fn(&[u8]) -> String) {
     let number = |variable, otherwise| {
         let value = std::env::var(variable).ok();
@@ -89,7 +91,7 @@ pub fn fuzz(name: &str, words: &Words, target: impl Fn(&[u8]) -> String) {
         }
         drop(over);
     });
-    println!("{name}: {runs} inputs, {found} of new outcomes");
+    println!("{name}: {runs} inputs, {found} with new outcomes");
 }
 
 fn committed(name: &str) -> Vec<Vec<u8>> {
@@ -100,7 +102,7 @@ fn committed(name: &str) -> Vec<Vec<u8>> {
         .unwrap_or_else(|error| panic!("{}: {error}", folder.display()))
         .filter_map(|entry| Some(entry.ok()?.path()))
         .collect();
-    // Runs are alike on every machine.
+    // Runs must be the same on every machine.
     paths.sort();
     paths
         .iter()
@@ -108,7 +110,7 @@ fn committed(name: &str) -> Vec<Vec<u8>> {
         .collect()
 }
 
-/// Keeps an input that fails.
+/// Writes an input that fails to a file; returns its path.
 fn save(name: &str, input: &[u8]) -> PathBuf {
     let hash = input.iter().fold(0xcbf2_9ce4_8422_2325, |hash: u64, byte| {
         (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3)
@@ -120,10 +122,10 @@ fn save(name: &str, input: &[u8]) -> PathBuf {
     path
 }
 
-/// What kind of outcome it is: neither numbers nor what is quoted of the input count.
+/// The kind of an outcome: its lower-case letters, without numbers and quotations of the input.
 fn kind(outcome: &str) -> String {
-    let told = outcome.split(['"', '`', '\'']).step_by(2);
-    let kind: String = told
+    let unquoted = outcome.split(['"', '`', '\'']).step_by(2);
+    let kind: String = unquoted
         .flat_map(str::chars)
         .filter(|c| c.is_ascii_lowercase())
         .collect();
@@ -134,7 +136,7 @@ fn below(random: &mut Random, end: usize) -> usize {
     random.next_u32() as usize % end.max(1)
 }
 
-/// A part of an input.
+/// A random part of an input.
 fn part(random: &mut Random, bytes: &[u8], words: &Words) -> std::ops::Range<usize> {
     let at = below(random, bytes.len() + 1);
     if words.is_text && below(random, 4) > 0 {
@@ -152,7 +154,7 @@ fn part(random: &mut Random, bytes: &[u8], words: &Words) -> std::ops::Range<usi
             .take_while(|byte| is_in(byte))
             .count();
         let behind = bytes[at..].iter().take_while(|byte| is_in(byte)).count();
-        // With the end of the line.
+        // A line includes its end.
         let end = (at + behind + usize::from(wants_line)).min(bytes.len());
         return at - before..end;
     }
@@ -160,7 +162,7 @@ fn part(random: &mut Random, bytes: &[u8], words: &Words) -> std::ops::Range<usi
     at..(at + below(random, longest + 1)).min(bytes.len())
 }
 
-/// One input of the corpus with some changes.
+/// A random input of the corpus with some changes.
 fn mutate(random: &mut Random, corpus: &[Vec<u8>], words: &Words) -> Vec<u8> {
     let mut bytes = corpus[below(random, corpus.len())].clone();
     let most = [1, 3, 12][below(random, 3)];
@@ -176,7 +178,7 @@ fn mutate(random: &mut Random, corpus: &[Vec<u8>], words: &Words) -> Vec<u8> {
                 let at = below(random, bytes.len());
                 bytes[at] = random.next_u32() as u8;
             }
-            // Beginnings say the most.
+            // The first bytes matter most.
             2 if !bytes.is_empty() => {
                 let at = below(random, bytes.len().min(64));
                 bytes[at] = random.next_u32() as u8;
@@ -195,7 +197,7 @@ fn mutate(random: &mut Random, corpus: &[Vec<u8>], words: &Words) -> Vec<u8> {
             6 if below(random, 8) == 0 => bytes.truncate(here.start),
             _ => {
                 let word = words.words[below(random, words.words.len())];
-                // In binary files what has a place keeps it.
+                // In binary files, what follows keeps its offset.
                 let end = if words.is_text {
                     here.end
                 } else {

@@ -1,4 +1,4 @@
-//! Fuzz targets: every public tracer with any bits as floats, the scene file, and each reader.
+//! Fuzz targets: the tracers on the CPU with floats of any bits, the scene file, and each reader.
 //!
 //!     SPHERULE_FUZZ_SECONDS=60 cargo test --release --test fuzz -- --nocapture
 
@@ -21,7 +21,7 @@ use spherule::scene::limits;
 use spherule::trace::CpuTracer;
 use spherule::{Device, Error};
 
-/// What is wrong, which must be said with its place and with help.
+/// The message of an error in the input. Checks its place and its help.
 fn outcome(error: &Error) -> String {
     let (message, help) = (error.to_string(), error.help());
     assert!(!message.is_empty() && !help.is_empty(), "{error:?}");
@@ -34,11 +34,11 @@ fn outcome(error: &Error) -> String {
         assert!(line > 0 && column > 0, "{error:?}");
         assert!(place.text.get(place.span.clone()).is_some(), "{error:?}");
     }
-    // Without the path and the line.
+    // The message without the path and the line.
     error.message.clone()
 }
 
-/// Bits of floats at which arithmetic turns odd.
+/// Floats at which arithmetic behaves oddly.
 const FLOATS: &[&[u8]] = &[
     &f32::NAN.to_le_bytes(),
     &f32::INFINITY.to_le_bytes(),
@@ -60,14 +60,14 @@ const FLOATS: &[&[u8]] = &[
     &[0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0],
 ];
 
-/// Whether the rungs' squares are floats.
+/// Whether the squares that the rungs compute neither overflow nor underflow.
 fn is_within_domain(ray: &Ray) -> bool {
     let size = ray.direction.abs().max_element();
     (1e-10..1e10).contains(&size) && ray.origin.abs().max_element() < 1e10
 }
 
-/// Of the input the first byte says how many spheres there are besides those of the input, the second how many those are;
-/// numbers follow, four a sphere and eight a ray.
+/// The input's first byte chooses how many random spheres there are, and its second how many
+/// spheres follow. Then come floats: four a sphere and eight a ray.
 #[test]
 fn tracer() {
     let words = Words {
@@ -111,8 +111,9 @@ fn tracer() {
     });
 }
 
-/// Hits are of spheres that there are, and inside of the ray's interval. Where squares of all that is given are floats, trees find what
-/// testing every sphere finds, and a ray is occluded where it has a hit.
+/// Hits name spheres that exist, and lie in the ray's interval. If no square of the inputs
+/// overflows or underflows, trees find what testing every sphere finds, and a ray is occluded
+/// exactly if it has a hit.
 fn trace(spheres: &[Sphere], rays: &[Ray]) -> String {
     let are_within = spheres.iter().all(|sphere| {
         limits::is_within(sphere, Vec3::ZERO, (0.0, 0.0))
@@ -125,7 +126,7 @@ fn trace(spheres: &[Sphere], rays: &[Ray]) -> String {
         Acceleration::Tree,
         Acceleration::BruteForce,
     ] {
-        // Every sphere of a large world takes its time.
+        // Testing every sphere of a large world takes too long.
         if acceleration == Acceleration::BruteForce && spheres.len() >= 300 {
             continue;
         }
@@ -142,19 +143,19 @@ fn trace(spheres: &[Sphere], rays: &[Ray]) -> String {
                 );
                 let is_none = hit.sphere == Hit::NONE_SPHERE && hit.t == Hit::NONE_T;
                 assert!(is_none || (hit.sphere as usize) < spheres.len(), "{name}");
-                // An end that is no number is none.
+                // An interval whose end is NaN has no end.
                 let is_beyond = hit.t < ray.t_min || hit.t >= ray.t_max;
                 assert!(is_none || !is_beyond, "{name}");
                 assert!(*occluded <= 1, "{name}");
-                let is_asked = are_within && is_within_domain(ray);
-                kinds[usize::from(is_none) + 2 * usize::from(is_asked)] += 1;
-                if !is_asked {
+                let is_checked = are_within && is_within_domain(ray);
+                kinds[usize::from(is_none) + 2 * usize::from(is_checked)] += 1;
+                if !is_checked {
                     continue;
                 }
                 assert_eq!(*occluded == 1, hit.is_some(), "{name}");
                 if spheres.len() < 300 {
                     let all = nearest_hit_in(rung.to_u32(), ray, spheres, 0, u32::MAX);
-                    // Of spheres equally near, trees do not say which they find.
+                    // Of equally near spheres, trees may find any.
                     assert_eq!(hit.t, all.t, "{name}");
                     assert_eq!(
                         is_occluded(rung.to_u32(), ray, spheres),
@@ -165,7 +166,7 @@ fn trace(spheres: &[Sphere], rays: &[Ray]) -> String {
             }
         }
     }
-    // By numbers of spheres and of hits.
+    // The outcome's kind depends on the numbers of spheres and of hits.
     let mut text = String::new();
     for kind in kinds.into_iter().chain([spheres.len()]) {
         let _ = write!(text, "{}", ["a", "b", "c", "d"][kind.min(3)]);
@@ -272,7 +273,7 @@ const OF_SCENES: &[&[u8]] = &[
     b"\xff",
 ];
 
-/// What is read can be rendered.
+/// A scene that is read can be rendered, or is refused.
 #[test]
 fn scene_file() {
     let words = Words {
@@ -299,7 +300,7 @@ fn scene_file() {
     });
 }
 
-/// Atoms that are read are a world that can be traced.
+/// Atoms that are read make a valid world.
 fn atoms(atoms: &[particles::Atom]) -> String {
     assert!(
         atoms.iter().all(|atom| atom.position.is_finite()),

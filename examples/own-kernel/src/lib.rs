@@ -1,23 +1,23 @@
-//! Runs a kernel of one's own through spherule's devices and errors: the free and the occupied
-//! room among spheres.
+//! Runs your own kernel with spherule's devices and errors: it finds the free and the occupied room
+//! among spheres.
 
 pub use own_kernel_device::{Grid, Room, measure_room};
 use rayon::prelude::*;
 use spherule::device::{Access, Gpu, Module};
 use spherule::kernel::Sphere;
 
-/// This package's kernel, as its build script compiled it.
+/// The SPIR-V that this package's build script compiled.
 static SPIRV: &[u8] = include_bytes!(env!("OWN_KERNEL_SPV"));
 
-/// What is at each point of the grid, found on a GPU.
+/// The result for each point of the grid, x running fastest, computed on a GPU.
 ///
 /// # Errors
 ///
-/// The device's errors.
+/// The errors of the device: an invalid kernel, missing memory, a failed launch or readback.
 pub fn rooms_on_gpu(gpu: &Gpu, grid: &Grid, spheres: &[Sphere]) -> spherule::Result<Vec<Room>> {
     let module = Module::from_bytes("own-kernel", SPIRV)?;
-    // SAFETY: these are the words that rust-gpu emitted, and the bindings below are those of the
-    // entry point. Without this the module would go through naga, which is safe and slower.
+    // SAFETY: rust-gpu emitted these words, and the bindings below are those of the entry point.
+    // Without this, naga would translate the module, which is safe and slower.
     let module = unsafe { module.trusted() };
     let kernel = gpu.kernel(
         &module,
@@ -38,7 +38,7 @@ pub fn rooms_on_gpu(gpu: &Gpu, grid: &Grid, spheres: &[Sphere]) -> spherule::Res
     gpu.read(&rooms)
 }
 
-/// The same on the CPU, through the same function.
+/// The same on the CPU, by the same function.
 #[must_use]
 pub fn rooms_on_cpu(grid: &Grid, spheres: &[Sphere]) -> Vec<Room> {
     (0..grid.points_per_side.pow(3))
@@ -47,7 +47,8 @@ pub fn rooms_on_cpu(grid: &Grid, spheres: &[Sphere]) -> Vec<Room> {
         .collect()
 }
 
-/// A cubic grid of `points_per_side` points a side, 2 to 128, that holds every sphere.
+/// A cubic grid that contains every sphere, with `points_per_side` points a side, clamped to 2 to
+/// 128.
 #[must_use]
 pub fn grid_around(spheres: &[Sphere], points_per_side: u32) -> Grid {
     let points_per_side = points_per_side.clamp(2, 128);

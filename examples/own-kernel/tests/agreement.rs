@@ -1,4 +1,4 @@
-//! The kernel on every adapter against the same function on the CPU, and both against spheres
+//! Compares the kernel on every adapter with the same function on the CPU, and that with a sphere
 //! whose volume is known.
 
 use own_kernel::{grid_around, rooms_on_cpu, rooms_on_gpu};
@@ -34,7 +34,7 @@ fn every_adapter_agrees_with_the_cpu() {
                     && (gpu.clearance - cpu.clearance).abs() <= 1e-3 * cpu.clearance.max(1.0)
             })
             .count();
-        // A point or a ray that touches a surface may be decided differently by a rounding.
+        // Rounding may decide differently for a point on a surface or a ray that grazes one.
         assert!(
             same * 1000 >= on_cpu.len() * 999,
             "{same} of {}",
@@ -54,7 +54,7 @@ fn a_ball_has_its_volume_and_its_clearance() {
         (volume / expected - 1.0).abs() < 0.01,
         "{volume} {expected}"
     );
-    // In the middle, the next surface is a radius away; in a corner there is none.
+    // From the middle, the next surface is a radius away; from a corner there is none.
     let middle = rooms[(40 * 81 + 40) * 81 + 40];
     assert!((middle.clearance - 2.0).abs() < 1e-5);
     assert_eq!(rooms[0].clearance, Hit::NONE_T);

@@ -1,4 +1,5 @@
-//! The nearest hit among many spheres, and whether there is any, by testing every one. Runs on the GPU and on the CPU.
+//! Brute force: finds the nearest hit among many spheres, or whether there is any, by testing each.
+//! Runs on the GPU and on the CPU.
 
 use glam::Vec4;
 use spirv_std::arch::IndexUnchecked;
@@ -31,7 +32,7 @@ impl Spheres for [Sphere] {
 
     #[inline]
     unsafe fn sphere(&self, index: u32) -> Sphere {
-        // SAFETY: the caller's.
+        // SAFETY: the caller ensures that `index` is below the number of spheres.
         unsafe { *self.index_unchecked(index as usize) }
     }
 }
@@ -77,7 +78,7 @@ impl Spheres for MovingSpheres<'_> {
 
     #[inline]
     unsafe fn sphere(&self, index: u32) -> Sphere {
-        // SAFETY: the caller's.
+        // SAFETY: the caller ensures that `index` is below the number of spheres.
         let sphere = unsafe { self.spheres.sphere(index) };
         self.moved(sphere, index as usize)
     }
@@ -104,7 +105,8 @@ pub fn nearest_hit(ray: &Ray, spheres: &[Sphere]) -> Hit {
 }
 
 /// [`nearest_hit`] on this rung (a value of [`Rung::to_u32`]), among the `count` spheres from
-/// `first` on; a range that leaves them is cut to them. The hit's index counts from the first of all.
+/// `first` on; a range that leaves them is cut to them. The hit's index counts from the first of
+/// all.
 #[inline]
 #[must_use]
 pub fn nearest_hit_in<S: Spheres + ?Sized>(

@@ -1,13 +1,14 @@
-//! Which spheres a ray is asked about: all of them, or those of the boxes that it meets. Runs on the GPU and on the CPU.
+//! Which spheres a ray is tested against: all of them, or those in the boxes that it meets. Runs on
+//! the GPU and on the CPU.
 //!
 //! | module | holds |
 //! | --- | --- |
 //! | [`brute`] | every sphere, one after the other |
-//! | `tiles` | every sphere by workgroups, which share what their pixels do not need to know each; on a GPU only |
+//! | `tiles` | every sphere, by workgroups that cull once for all of their pixels; on a GPU only |
 //! | [`node`] | [`Node`](node::Node) and [`Tree`](node::Tree): boxes around the spheres |
 //! | [`slabs`] | which boxes of a node a ray may meet |
 //! | [`walk`] | a ray's way through a tree |
-//! | [`traversal`] | [`Traversal`](traversal::Traversal): what finds the hits of light paths |
+//! | [`traversal`] | [`Traversal`](traversal::Traversal): how the rays of light paths find what they hit |
 
 pub mod brute;
 pub mod node;

@@ -1,9 +1,12 @@
-//! [`Node`] and [`Tree`]: a tree of boxes around the spheres, as memory holds it. Runs on the GPU and on the CPU.
+//! [`Node`] and [`Tree`]: a tree of boxes around the spheres, as it is laid out in memory. Runs on
+//! the GPU and on the CPU.
 //!
-//! A node holds up to eight children and takes 128 bytes. Their boxes are quantised: sixteen bits a coordinate, counted from
-//! the node's own corner. The layout follows H. Ylitie, T. Karras, S. Laine, Efficient Incoherent Ray Traversal on GPUs
-//! Through Compressed Wide BVHs, HPG 2017. There a coordinate is a byte; here it is the upper half of a float, which a
-//! GPU decodes in an eighth of a node's instructions instead of two fifths, for a tenth more memory.
+//! A node holds up to eight children and takes 128 bytes. Their boxes are quantised: the sides of
+//! boxes are stored as distances from a corner of the node, in sixteen bits each. The layout
+//! follows H. Ylitie, T. Karras, S. Laine, Efficient Incoherent Ray Traversal on GPUs Through
+//! Compressed Wide BVHs, HPG 2017. There a coordinate is a byte. Here it is the upper half of a
+//! float: decoding takes a GPU an eighth of a node's instructions instead of two fifths, for a
+//! tenth more memory.
 
 #[cfg(not(target_arch = "spirv"))]
 use alloc::vec;
@@ -12,48 +15,51 @@ use crate::precision::widening;
 use bytemuck::{Pod, Zeroable};
 use glam::{UVec4, Vec3};
 
-/// Up to eight boxes, and what is in them: a node each, or one to four spheres.
+/// Up to eight boxes and their contents: each box holds either a node or one to four spheres.
 ///
-/// The first of a tree's nodes is none: it is the [`Extent`]. The second is the root.
+/// The first element of a tree's array is not a node: it is the [`Extent`]. The second is the root.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Node {
-    /// How far from the corner the children's sides are: the smallest x, y, z, then the largest. Of a
-    /// row's words each holds two children, [`lower`](Node::lower) the first four and
-    /// [`upper`](Node::upper) the last four.
+    /// The distances of the children's sides from the corner. The rows are the smallest x, y, z,
+    /// then the largest x, y, z. Each of a row's four words holds two children:
+    /// [`lower`](Node::lower) gives the first four children, [`upper`](Node::upper) the last four.
     pub sides: [UVec4; 6],
-    /// The bits of the corner x, y, z; and which children are nodes: bit 4c + 1 where child c is one.
+    /// x, y and z are the bits of the corner's coordinates. w says which children are nodes: bit
+    /// 4c + 1 is set if child c is one.
     pub corner: UVec4,
-    /// The index of the first child that is a node, the others follow; the index of the first sphere in
-    /// any child, the others follow, child by child; the spheres, a bit each: bits 4c to 4c + n − 1 where child c has n;
-    /// and nothing.
+    /// x is the index of the first child that is a node; the other nodes follow it. y is the index
+    /// of the first sphere in any child; the others follow it, child by child. z has a bit for each
+    /// sphere: bits 4c to 4c + n − 1 if child c has n spheres. w is unused.
     pub links: UVec4,
 }
 
 impl Node {
-    /// The most children.
+    /// The largest number of children.
     pub const WIDTH: usize = 8;
-    /// The most spheres in a child.
+    /// The largest number of spheres in a child.
     pub const MAX_LEAF: usize = 4;
-    /// The most nodes on the way from the root to a leaf.
+    /// The largest number of nodes on a path from the root to a leaf.
     pub const MAX_DEPTH: usize = 20;
-    /// The most spheres that a tree has room to name.
+    /// The largest number of spheres in a tree.
     pub const MAX_SPHERES: u32 = 1 << 30;
-    /// Where the root is.
+    /// The index of the root.
     pub const ROOT: u32 = 1;
-    /// The specialisation constant that is 1 where the pipeline is for worlds with a tree.
+    /// The number of the specialisation constant that is 1 if the pipeline is for worlds with a
+    /// tree.
     pub const SPEC_ID: u32 = 4;
-    /// What coordinates must stay below, for the walk's numbers to be finite.
+    /// Coordinates must be below this for the walk's numbers to be finite.
     pub const MAX_COORDINATE: f32 = (1_u64 << 60) as f32;
 
-    /// Whether a child is a node. Of a child's number, here and below, the lowest three bits count.
+    /// Whether a child is a node. Here and below, only the lowest three bits of a child's number
+    /// count.
     #[inline]
     #[must_use]
     pub fn is_node(&self, child: u32) -> bool {
         self.corner.w >> (4 * (child & 7) + 1) & 1 == 1
     }
 
-    /// Where a child is that is a node.
+    /// The index of a child that is a node.
     #[inline]
     #[must_use]
     pub fn child(&self, child: u32) -> u32 {
@@ -61,7 +67,7 @@ impl Node {
         self.links.x.wrapping_add(before.count_ones())
     }
 
-    /// Where a child's spheres begin, and how many it has.
+    /// The index of a child's first sphere, and the number of its spheres.
     #[inline]
     #[must_use]
     pub fn leaf(&self, child: u32) -> (u32, u32) {
@@ -78,22 +84,23 @@ impl Node {
         self.corner.w != 0
     }
 
-    /// Where the spheres of all children begin, and how many they are.
+    /// The index of the first sphere of all children, and the number of their spheres.
     #[inline]
     #[must_use]
     pub fn all_spheres(&self) -> (u32, u32) {
         (self.links.y, self.links.z.count_ones())
     }
 
-    /// The side of the first of a word's two children: the lower half, as a float's upper half.
+    /// The side of the first of a word's two children: the word's lower half is the upper half of a
+    /// float.
     #[inline]
     #[must_use]
     pub fn lower(word: u32) -> f32 {
         f32::from_bits(word << 16)
     }
 
-    /// The side of the second of a word's two children: the whole word, whose upper half was chosen with
-    /// the lower in mind.
+    /// The side of the second of a word's two children: the whole word as a float. Its upper half
+    /// was chosen for the lower half that it has.
     #[inline]
     #[must_use]
     pub fn upper(word: u32) -> f32 {
@@ -101,19 +108,19 @@ impl Node {
     }
 }
 
-/// What a tree's first node says instead: of all spheres, the box and the smallest radius.
+/// What the first element of a tree's array holds: the box and the smallest radius of all spheres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Extent {
-    /// The corner of the smallest coordinates.
+    /// The corner with the smallest coordinates.
     pub low: Vec3,
-    /// The corner of the largest coordinates.
+    /// The corner with the largest coordinates.
     pub high: Vec3,
-    /// The smallest radius.
+    /// The smallest radius of all spheres.
     pub smallest_radius: f32,
 }
 
 impl Extent {
-    /// As the tree's first node.
+    /// The extent as the first element of a tree's array.
     #[must_use]
     pub fn to_node(self) -> Node {
         let (low, high) = (self.low, self.high);
@@ -126,7 +133,7 @@ impl Extent {
         }
     }
 
-    /// Out of the tree's first node.
+    /// The extent that the first element of a tree's array holds.
     #[inline]
     #[must_use]
     pub fn of_node(node: &Node) -> Self {
@@ -137,7 +144,7 @@ impl Extent {
         }
     }
 
-    /// How much wider boxes must be for this rung, in scene units, around a ray from `origin`.
+    /// How much wider boxes must be for this rung, in scene units, for a ray from `origin`.
     #[inline]
     #[must_use]
     pub fn widening(&self, rung: u32, origin: Vec3) -> f32 {
@@ -155,25 +162,26 @@ pub(super) fn point(bits: UVec4) -> Vec3 {
     )
 }
 
-/// The nodes of a tree, known to be one: the first is an [`Extent`], the second the root, each other is a child of exactly one
-/// node that stands before it, and none is more than [`Node::MAX_DEPTH`] nodes down, the root counted.
+/// The nodes of a tree, checked to be one. The first is an [`Extent`] and the second the root. Each
+/// other node is a child of exactly one node that stands before it. No path from the root has more
+/// than [`Node::MAX_DEPTH`] nodes, counting the root.
 #[derive(Clone, Copy, Debug)]
 pub struct Tree<'a> {
     nodes: &'a [Node],
 }
 
 impl<'a> Tree<'a> {
-    /// No tree: walks in it find nothing.
+    /// No tree: a walk through it finds nothing.
     pub const NONE: Self = Self { nodes: &[] };
 
-    /// Of nodes that are a tree; `None` if they are not. Looks at each.
+    /// Checks each of these nodes; `None` if they are not a tree.
     ///
     /// ```
     /// use spherule_kernel::accel::node::{Node, Tree};
     ///
     /// assert!(Tree::of(&[]).is_some());
     /// assert!(Tree::of(&[Node::default(); 2]).is_some());
-    /// // No node names the third.
+    /// // The third node is nobody's child.
     /// assert!(Tree::of(&[Node::default(); 3]).is_none());
     /// ```
     #[cfg(not(target_arch = "spirv"))]
@@ -183,11 +191,12 @@ impl<'a> Tree<'a> {
         is_tree.then_some(Self { nodes })
     }
 
-    /// Of nodes that are a tree, without a look at them.
+    /// Takes nodes that are a tree, without checking them.
     ///
     /// # Safety
     ///
-    /// [`Tree::of`] would take them; on a GPU those that are bound.
+    /// [`Tree::of`] accepts these nodes. On a GPU: it accepts the nodes in the buffer that is
+    /// bound.
     #[inline]
     #[must_use]
     pub const unsafe fn of_unchecked(nodes: &'a [Node]) -> Self {
@@ -209,14 +218,16 @@ impl<'a> Tree<'a> {
     }
 }
 
-/// Whether nodes, of which there are some, are a tree: level by level each node's children are the next that no other has named.
+/// Whether nodes are a tree: each node but the first two is the child of exactly one node before
+/// it, and none is too deep.
 #[cfg(not(target_arch = "spirv"))]
 fn is_tree(nodes: &[Node]) -> bool {
     if nodes.len() <= Node::ROOT as usize {
         return false;
     }
-    // Each child is named once: as many are named as there are, and none twice. Nodes stand behind those that name them,
-    // so that depths are known when they are asked for; what is not named is at no depth.
+    // A parent stands before its children, so that a node's depth is known when the loop comes to
+    // it. A node that is nobody's child still has the depth NOWHERE then, and a node with two
+    // parents would get a depth twice.
     const NOWHERE: u8 = u8::MAX;
     let mut depths = vec![NOWHERE; nodes.len()];
     depths[Node::ROOT as usize] = 1;
@@ -247,7 +258,7 @@ fn is_tree(nodes: &[Node]) -> bool {
     true
 }
 
-/// Bit 4c + 1 of each child c: those of [`Node::corner`] that say which are nodes.
+/// Bit 4c + 1 of each child c: the bits in [`Node::corner`] that say which children are nodes.
 #[cfg(not(target_arch = "spirv"))]
 const NODES: u32 = 0x2222_2222;
 
@@ -263,7 +274,7 @@ mod tests {
 
     use super::*;
 
-    /// A node whose children from `first` on are nodes, so many.
+    /// A node with `count` children that are nodes, from index `first` on.
     fn inner(first: u32, count: u32) -> Node {
         let bits = (0..count).fold(0, |bits, child| bits | 2 << (4 * child));
         Node {
@@ -281,11 +292,11 @@ mod tests {
             ("no root", vec![leaf]),
             ("its own child", vec![leaf, inner(1, 1)]),
             (
-                "the child of one behind it",
+                "the child of a node after it",
                 vec![leaf, inner(2, 1), inner(1, 1)],
             ),
             (
-                "the child of two",
+                "the child of two nodes",
                 vec![leaf, inner(2, 2), inner(4, 1), inner(4, 1), leaf],
             ),
             ("beyond the last", vec![leaf, inner(2, 2), leaf]),

@@ -2,26 +2,30 @@
 //!
 //! # No hit is lost
 //!
-//! Boxes are rounded outwards. With u = 2⁻²⁴, P a node's corner, v a side's distance from it, O the ray's origin
-//! and i = 1/d, a plane is met at
+//! Boxes are rounded outwards. Let u = 2⁻²⁴, P a node's corner, v a side's distance from it, O the
+//! ray's origin, i = 1/d and s the start of the ray's interval. The ray meets a side's plane at
 //!
 //! > v i + (P i + (−O i − s ∓ S)),
 //!
-//! s the start of the ray, computed to within 5u((|P| + |O| + v)|i| + |s|), fused or not, division off by two units. Neither |P| nor v
-//! is beyond twice the size or the sides of the tree's [`Extent`], whose corners are L and H, so that one S serves all nodes: per
-//! axis 16u((max(|L|, |H|) + |O| + 2(H − L))|i| + |s|), by which far planes are moved away and near ones nearer. A direction's
-//! component below 2⁻⁶⁴ of its largest is taken for that: the ray is off by 2⁻⁶⁴ of its way then.
+//! - This is computed to within 5u((|P| + |O| + v)|i| + |s|), fused or not, with division off by
+//!   two units in the last place.
+//! - |P| is at most twice the size of the tree's [`Extent`], and v at most twice its sides. L and H
+//!   are its corners.
+//! - So one S serves all nodes: per axis 16u((max(|L|, |H|) + |O| + 2(H − L))|i| + |s|). Far planes
+//!   are moved away by it, and near planes nearer.
+//! - A component of the direction below 2⁻⁶⁴ of the largest is replaced by 2⁻⁶⁴ of it: the ray is
+//!   then off by 2⁻⁶⁴ of the distance it goes.
 //!
-//! The rungs below [`Rung::Compensated`] find hits where there are none, and a box must not keep them
-//! from what they find without a tree. With D the distance from O to the farthest
-//! corner of all, each box is wider by what the rung may be off:
-//! * [`robust`](crate::precision::robust): 32u D. The foot of its perpendicular is off by 12u|o|, and
-//!   its t by what an error of 4u(o·o + r²) in c makes of it: 16u max(|o|, r) at most, |b| being at
-//!   least |o|/2 or else r at least 0.86|o|.
-//! * [`textbook`](crate::precision::textbook): √(r² + 24u D²) − r, r the smallest radius. Its hits are on the sphere
-//!   whose r² is off by that.
+//! The rungs below [`Rung::Compensated`](crate::Rung::Compensated) may find hits where exact
+//! arithmetic has none, and must find the same hits with a tree as without. So each box is widened
+//! by what the rung may be off. With D the distance from O to the farthest corner of the extent:
+//! * [`robust`](crate::precision::robust): 32u D. The foot of its perpendicular is off by 12u|o|.
+//!   An error of 4u(o·o + r²) in c puts its t off by at most 16u max(|o|, r), because |b| is at
+//!   least |o|/2, or else r is at least 0.86|o|.
+//! * [`textbook`](crate::precision::textbook): √(r² + 24u D²) − r, with r the smallest radius. Its
+//!   hits are on a sphere whose r² is off by 24u D².
 //!
-//! Coordinates are to be below 2⁶⁰.
+//! Coordinates must be below 2⁶⁰.
 
 use glam::{UVec3, UVec4, Vec3};
 use spirv_std::arch::IndexUnchecked;
@@ -32,32 +36,32 @@ use crate::cull::discriminant::power_of_two_under;
 use crate::gpu::instructions::{larger, smaller};
 use crate::ray::Ray;
 
-/// What stays the same of a ray as it meets box after box.
+/// A ray, prepared for testing it against one box after another.
 #[derive(Clone, Copy, Debug)]
 pub struct Slabs {
-    /// One over the direction, whose largest component was brought between 1 and 2.
+    /// One over the direction, after scaling its largest component to between 1 and 2.
     pub inverse: Vec3,
-    /// What is added where a box begins, and where it ends.
+    /// What is added to the parameters of near planes: −O i − s − S.
     pub near: Vec3,
-    /// As `near`.
+    /// What is added to the parameters of far planes: −O i − s + S.
     pub far: Vec3,
-    /// Which of a node's rows of sides a ray meets first, an axis each.
+    /// For each axis, which of a node's rows of sides the ray meets first.
     pub near_rows: UVec3,
-    /// What a parameter of the ray is, times this, less `start`, as the planes count it.
+    /// A parameter t of the ray is t · `unit` − `start` in the planes' parameters.
     pub unit: f32,
-    /// The start of the ray's interval, times `unit`: to the planes it is zero.
+    /// The start of the ray's interval, times `unit`. In the planes' parameters it is zero.
     pub start: f32,
-    /// Bit 2 + k set where the direction is positive along axis k.
+    /// Bit 2 + k is set if the direction is not negative along axis k.
     pub octant: u32,
 }
 
 impl Slabs {
-    /// Of a ray in a tree of this extent.
+    /// Prepares a ray for a tree of this extent.
     #[inline(always)]
     #[must_use]
     pub fn of(rung: u32, ray: &Ray, world: &Extent) -> Self {
         let scale = power_of_two_under(ray.direction);
-        // One over it: exponents that add up to those of one.
+        // 1 / scale: the exponents add up to twice that of one.
         let unit = f32::from_bits(0x7f00_0000_u32.wrapping_sub(scale.to_bits()));
         let d = ray.direction * scale;
         let inverse = Vec3::new(reciprocal(d.x), reciprocal(d.y), reciprocal(d.z));
@@ -81,14 +85,14 @@ impl Slabs {
         }
     }
 
-    /// The end of a ray, given as the planes count it, with what a box test may be off by.
+    /// The end of a ray in the planes' parameters, plus what a box test may be off by.
     #[inline]
     #[must_use]
     pub fn widened_end(end: f32) -> f32 {
         end + end.abs() * (16.0 * U)
     }
 
-    /// The children that the ray may meet before `end`: bit 4c set where it may meet child c.
+    /// The children that the ray may meet before `end`: bit 4c is set if it may meet child c.
     #[inline]
     pub(super) fn meets(&self, corner: Vec3, sides: &[UVec4; 6], end: f32) -> u32 {
         let boxes = Boxes {
@@ -98,13 +102,14 @@ impl Slabs {
             end: Self::widened_end(end),
         };
         let row = |row: u32| {
-            // SAFETY: `near_rows` are 0 or 3, 1 or 4, 2 or 5.
+            // SAFETY: `near_rows` are 0 or 3, 1 or 4, and 2 or 5: all are below 6.
             load(unsafe { sides.index_unchecked(row as usize) })
         };
         let rows = self.near_rows;
         let near = by_word(row(rows.x), row(rows.y), row(rows.z));
         let far = by_word(row(3 - rows.x), row(5 - rows.y), row(7 - rows.z));
-        // Of each gap the sign and three bits that are dropped below: one instruction.
+        // Shifts in the sign and three more bits of each gap with one instruction. The three bits
+        // are dropped below.
         let mut gaps = boxes.gap(upper(near[3]), upper(far[3])) >> 28;
         gaps = gaps << 4 | boxes.gap(upper(near[2]), upper(far[2])) >> 28;
         gaps = gaps << 4 | boxes.gap(upper(near[1]), upper(far[1])) >> 28;
@@ -116,8 +121,8 @@ impl Slabs {
         !gaps >> 3 & FIRST_OF_FOUR
     }
 
-    /// The children's bits in the order of the visit, the first highest: child c at 4c with the
-    /// bits of the octant flipped.
+    /// The children's bits in the order in which they are visited, the first being the highest: the
+    /// bit 4c of child c moves to 4c XOR `octant`.
     #[inline]
     pub(super) fn in_order(&self, children: u32) -> u32 {
         let mut bits = children;
@@ -137,7 +142,7 @@ impl Slabs {
 /// Bit 4c of each child c.
 pub(super) const FIRST_OF_FOUR: u32 = 0x1111_1111;
 
-/// Planes of boxes, as parameters along a ray: v·inverse + near or far, v a side.
+/// Turns the sides of boxes into parameters along a ray: v · inverse + near or far, for a side v.
 #[derive(Clone, Copy)]
 struct Boxes {
     inverse: Vec3,
@@ -147,14 +152,16 @@ struct Boxes {
 }
 
 impl Boxes {
-    /// The bits of how far a ray goes in a box: negative, where it misses it.
+    /// The length of the ray's interval in a box, as the bits of a float; negative if the ray
+    /// misses the box.
     #[inline]
     fn gap(&self, near: Vec3, far: Vec3) -> u32 {
         let near = near * self.inverse + self.near;
         let far = far * self.inverse + self.far;
-        // Of floats that are not negative the bits are in order, too, and a GPU takes three integers at once. A
-        // negative one is never the largest of those with zero; and as the smallest, whichever it is, it makes the gap
-        // negative.
+        // The bits of floats that are not negative are ordered as the floats are, and a GPU
+        // compares three integers at once. Negative floats are negative integers: they never win
+        // against zero where the largest is taken, and where the smallest is taken any of them
+        // makes the gap negative.
         let bits = |x: f32| x.to_bits() as i32;
         let first = larger(larger(larger(bits(near.x), bits(near.y)), bits(near.z)), 0);
         let last = smaller(
@@ -165,7 +172,7 @@ impl Boxes {
     }
 }
 
-/// The same word of three rows together.
+/// Groups the words of three rows: element k holds word k of each row.
 #[inline]
 fn by_word(x: UVec4, y: UVec4, z: UVec4) -> [[u32; 3]; 4] {
     [
@@ -186,13 +193,13 @@ fn upper([x, y, z]: [u32; 3]) -> Vec3 {
     Vec3::new(Node::upper(x), Node::upper(y), Node::upper(z))
 }
 
-/// All four words at once, which compilers for GPUs do not make of loads of their own.
+/// Loads all four words at once; compilers for GPUs do not merge four loads.
 #[inline]
 pub(super) fn load(words: &UVec4) -> UVec4 {
     *words
 }
 
-/// 1/x; for an x below 2⁻⁶⁴, 2⁶⁴ with its sign.
+/// 1/x; for |x| up to 2⁻⁶⁴, 2⁶⁴ with the sign of x.
 #[inline]
 fn reciprocal(x: f32) -> f32 {
     const SMALLEST: f32 = 1.0 / (1_u128 << 64) as f32;

@@ -1,5 +1,6 @@
-//! Brute force on a GPU: a workgroup lists the spheres that any of its pixels may see, of all there are, and each of its
-//! threads goes through the list for four pixels, one after the other. Runs on the GPU.
+//! Brute force on a GPU by tiles. A workgroup culls all spheres and lists those that any of its
+//! pixels may see. Then each of its threads goes through the list for four pixels, one after the
+//! other. Runs on the GPU.
 
 use glam::{UVec2, Vec2, Vec4};
 use spirv_std::arch::{
@@ -14,40 +15,42 @@ use crate::gpu::instructions::{highest_bit, lowest_bit};
 use crate::precision::intersect;
 use crate::{Camera, Hit, Launch, Material, Pixel, Sphere};
 
-/// The threads of a workgroup for each tile.
+/// The size of a workgroup in threads; one workgroup renders one tile.
 pub const GROUP: UVec2 = UVec2::new(8, 32);
 const THREADS: u32 = GROUP.x * GROUP.y;
-/// Each 32 threads have 8 × 4 pixels at a time, and four times as many stand side by side.
+/// 32 threads render a block of 8 × 4 pixels at a time, and [`ABREAST`] blocks lie side by side.
 const BLOCK: UVec2 = UVec2::new(8, 4);
 const ABREAST: u32 = TILE / BLOCK.x;
-/// Rows of pixels that a workgroup has at a time.
+/// Rows of pixels that a workgroup renders at a time.
 const ROWS: u32 = THREADS / TILE;
-/// How many spheres a list has room for. What a workgroup shares decides how many of them a multiprocessor holds.
+/// How many spheres a list has room for. The memory that a workgroup shares decides how many
+/// workgroups a multiprocessor holds.
 pub const LISTED: usize = 256;
-/// Spheres that a workgroup looks at between two barriers, at most. If a list has no room for those that are seen, it looks at a fourth of as many,
+/// The largest number of spheres that a workgroup culls between two barriers. If the list has no
+/// room for those that are seen, the batch is tried again with a quarter of the size.
 const BATCH: u32 = 1 << 14;
-/// but not at fewer than this, which fit into half a list.
+/// The smallest such number, which fits into half a list.
 const SMALL_BATCH: u32 = LISTED as u32 / 2;
-/// Cones that a thread looks at between two branches, and before it asks the rung.
+/// Cones that a thread tests between two branches, and before it evaluates the rung.
 const STEP: u32 = 4;
 const BITS: u32 = u32::BITS;
-/// Whose memory an atomic operation is on, and that it orders no other.
+/// Atomic operations are on the workgroup's memory, and order no other operation.
 const WORKGROUP: u32 = Scope::Workgroup as u32;
 const RELAXED: u32 = Semantics::NONE.bits();
 
 /// What the threads of a workgroup share.
 pub struct Shared<'a> {
-    /// Around the rays of all of its pixels.
+    /// Four planes around the rays of all of its pixels.
     pub planes: &'a mut [Vec4; 4],
-    /// Where its rows of pixels are on the film.
+    /// The y coordinate on the film of each of its rows of pixels.
     pub rows: &'a mut [f32; TILE as usize],
-    /// How many spheres are listed, or would be if there were room.
+    /// How many spheres are in the list, or would be if it had room.
     pub listed: &'a mut u32,
-    /// The spheres that may be seen, by their indices. Those of one batch are in no order.
+    /// The indices of the spheres that may be seen. Those of one batch are in no order.
     pub list: &'a mut [u32; LISTED],
-    /// They themselves.
+    /// The spheres in the list.
     pub spheres: &'a mut [Sphere; LISTED],
-    /// Their cones.
+    /// The cones of the spheres in the list.
     pub cones: &'a mut [Vec4; LISTED],
 }
 
@@ -78,12 +81,12 @@ pub fn render_group(
         let (first, last) = (film(launch, corner), film(launch, corner + (TILE - 1)));
         let (low, high) = (Vec2::new(first.x, last.y), Vec2::new(last.x, first.y));
         let plane = Plane::around(&launch.camera, low, high, thread);
-        // SAFETY: there are four.
+        // SAFETY: there are four planes.
         unsafe { *shared.planes.index_unchecked_mut(thread as usize) = plane.to_vec4() };
     }
     if thread < TILE {
         let y = film(launch, corner + UVec2::new(0, thread)).y;
-        // SAFETY: as just asked.
+        // SAFETY: `thread` is below the number of rows.
         unsafe { *shared.rows.index_unchecked_mut(thread as usize) = y };
     }
     if thread == 0 {
@@ -96,7 +99,7 @@ pub fn render_group(
     let mut is_continued = launch.first_of_tile == 0;
     let mut batch = BATCH;
     let mut before = 0;
-    // The bounds of the loop are the same for every thread of the workgroup.
+    // Every thread of the workgroup goes through the same iterations.
     loop {
         workgroup_memory_barrier_with_group_sync();
         let planes = [
@@ -112,7 +115,8 @@ pub fn render_group(
         let mut count = *shared.listed;
         let mut is_due = true;
         if count > LISTED as u32 {
-            // What was listed before this batch is still there; the batch is looked at again.
+            // The list had no room. What was listed before this batch is still there; a smaller
+            // batch is tried.
             count = before;
             batch = SMALL_BATCH.max(batch / 4);
         } else {
@@ -124,19 +128,20 @@ pub fn render_group(
         if is_due {
             put_cones(launch, spheres, count, thread, shared);
             workgroup_memory_barrier_with_group_sync();
-            // All know how many there were.
+            // Every thread has read how many there were.
             if thread == 0 {
                 *shared.listed = 0;
             }
             before = 0;
             if is_continued {
-                // Pixels are read that were written: not from where they were kept before.
+                // Pixels that were written are read again below: the barrier keeps those reads from
+                // stale copies.
                 device_memory_barrier();
             }
             let mut row = 0;
             loop {
                 let pixel = first_pixel + UVec2::new(0, row);
-                // SAFETY: there are as many.
+                // SAFETY: there is one element for each row of the tile.
                 let upwards =
                     unsafe { *shared.rows.index_unchecked((pixel.y - corner.y) as usize) };
                 render_listed(
@@ -166,8 +171,9 @@ pub fn render_group(
     }
 }
 
-/// Which row of tiles, of so many rows of pixels, a row of workgroups has: those in the middle come first, as pictures have most there, and what
-/// takes longest must not begin last.
+/// The row of tiles that a row of workgroups renders, in a launch of `height` rows of pixels. The
+/// middle rows come first: images have most spheres there, and what takes longest must not begin
+/// last.
 #[inline]
 fn from_the_middle(row: u32, height: u32) -> u32 {
     let (middle, away) = (height.div_ceil(TILE) / 2, row.div_ceil(2));
@@ -178,7 +184,8 @@ fn from_the_middle(row: u32, height: u32) -> u32 {
     }
 }
 
-/// Adds to the list what this thread looks at, of spheres from `first` up to `stop`, and the frustum does not miss.
+/// Culls this thread's share of the spheres from `first` up to `stop`, and adds to the list those
+/// that the frustum does not miss.
 #[inline]
 fn list_seen(
     frustum: &Frustum,
@@ -195,7 +202,7 @@ fn list_seen(
     loop {
         // SAFETY: `stop` is at most the number of spheres.
         let look = |index: u32| unsafe { *spheres.index_unchecked(index as usize) };
-        // Both are asked for before the first is looked at, so that a thread waits for memory once.
+        // Both are loaded before the first is tested, so that a thread waits for memory once.
         let one = look(mine);
         let two = look((mine + THREADS).min(stop - 1));
         let mut seen = u32::from(!frustum.misses(one));
@@ -204,10 +211,10 @@ fn list_seen(
             loop {
                 let which = lowest_bit(seen);
                 seen &= seen - 1;
-                // SAFETY: all threads count by atomic additions until they next meet.
+                // SAFETY: until the next barrier, all threads count by atomic additions.
                 let place = unsafe { atomic_i_add::<u32, WORKGROUP, RELAXED>(shared.listed, 1) };
                 if place < LISTED as u32 {
-                    // SAFETY: as just asked.
+                    // SAFETY: `place` is below the length of the list.
                     unsafe {
                         *shared.list.index_unchecked_mut(place as usize) = mine + which * THREADS;
                     }
@@ -224,7 +231,8 @@ fn list_seen(
     }
 }
 
-/// Makes the cones of the spheres that are listed, and of none up to whole steps.
+/// Makes the cones of the spheres in the list, and pads them to whole steps with cones that every
+/// ray misses.
 #[inline]
 fn put_cones(
     launch: &Launch,
@@ -236,7 +244,8 @@ fn put_cones(
     let mut at = thread;
     while at < count.next_multiple_of(STEP) {
         let mut cone = Cone::none();
-        // SAFETY: lists are whole steps long, and what is listed is below the number of spheres.
+        // SAFETY: the list's length is a multiple of a step, and listed indices are below the
+        // number of spheres.
         unsafe {
             if at < count {
                 let index = *shared.list.index_unchecked(at as usize);
@@ -250,7 +259,8 @@ fn put_cones(
     }
 }
 
-/// Renders a pixel of the launch by the `count` spheres that are listed. If it is continued, it keeps what it has unless one of them is nearer.
+/// Renders a pixel of the launch from the `count` spheres in the list. A pixel that is continued
+/// keeps its colour unless one of them is nearer.
 #[expect(
     clippy::too_many_arguments,
     reason = "these are the kernel's bindings, one each"
@@ -281,26 +291,27 @@ fn render_listed(
     let blank = launch.blank();
     if count == 0 {
         if !is_continued {
-            // SAFETY: as just asked.
+            // SAFETY: `place` is below the number of pixels.
             unsafe { *pixels.index_unchecked_mut(place) = blank };
         }
         return;
     }
     let mut end = Hit::NONE_T;
     if is_continued {
-        // SAFETY: as just asked.
+        // SAFETY: `place` is below the number of pixels.
         end = unsafe { pixels.index_unchecked(place).depth() };
     }
     let ray = launch.camera.ray(film);
     let sight = Sight::along(ray.direction);
     let mut nearest = Hit { t: end, sphere: 0 };
     let mut base = 0;
-    // Loops test their end where they may go on: of the other shape the driver makes copies of all that changes. No list is empty here.
+    // The loops test their end at the end of the body: otherwise the driver copies everything that
+    // changes. The list is not empty here.
     loop {
         let stop = count.next_multiple_of(STEP).min(base + BITS);
         let mut misses = step(&sight, u32::MAX, base, shared);
         let mut at = base + STEP;
-        // Of few spheres most lists are one step long.
+        // If the scene has few spheres, most lists are one step long.
         if at < stop {
             loop {
                 misses = step(&sight, misses, at, shared);
@@ -310,7 +321,7 @@ fn render_listed(
                 }
             }
         }
-        // The last cone's bit is the lowest.
+        // The lowest bit is the last cone's.
         let mut candidates = !misses;
         if candidates != 0 {
             loop {
@@ -318,7 +329,8 @@ fn render_listed(
                 candidates ^= 1 << bit;
                 let (index, sphere) = listed(stop - 1 - bit, shared);
                 let t = intersect(rung, sphere, &ray);
-                // Lists are in no order: of two at the same t the first of all spheres is taken.
+                // The list is in no order: of two spheres at the same t, the one with the lower
+                // index wins.
                 if (t < nearest.t) | ((t == nearest.t) & (index < nearest.sphere)) {
                     nearest = Hit { t, sphere: index };
                 }
@@ -332,7 +344,8 @@ fn render_listed(
             break;
         }
     }
-    // What a pixel has from earlier spheres it keeps.
+    // A pixel keeps the colour that it has from earlier spheres unless a sphere of this list is
+    // nearer.
     if !is_continued | (nearest.t < end) {
         if nearest.t >= end {
             nearest = Hit::NONE;
@@ -346,12 +359,13 @@ fn render_listed(
             materials,
             blank,
         );
-        // SAFETY: as above.
+        // SAFETY: `place` is below the number of pixels.
         unsafe { *pixels.index_unchecked_mut(place) = pixel };
     }
 }
 
-/// Moves in from the right whether the ray misses each of four cones.
+/// Tests four cones from `at` on: shifts `before` left by four bits and puts in a 1 for each that
+/// the ray misses.
 #[inline]
 fn step(sight: &Sight, before: u32, at: u32, shared: &Shared<'_>) -> u32 {
     let first = sight.misses(before, cone(at, shared));
@@ -360,10 +374,10 @@ fn step(sight: &Sight, before: u32, at: u32, shared: &Shared<'_>) -> u32 {
     sight.misses(third, cone(at + 3, shared))
 }
 
-/// A sphere of the list, and its index.
+/// The index of a sphere in the list, and the sphere.
 #[inline]
 fn listed(at: u32, shared: &Shared<'_>) -> (u32, Sphere) {
-    // SAFETY: callers ask for those that are listed.
+    // SAFETY: callers ask for places below the list's length.
     unsafe {
         (
             *shared.list.index_unchecked(at as usize),
@@ -372,14 +386,14 @@ fn listed(at: u32, shared: &Shared<'_>) -> (u32, Sphere) {
     }
 }
 
-/// One of the cones.
+/// The cone at this place of the list.
 #[inline]
 fn cone(at: u32, shared: &Shared<'_>) -> Cone {
-    // SAFETY: callers ask for those that were put.
+    // SAFETY: callers ask for places below the list's length, rounded up to whole steps.
     Cone::from_vec4(unsafe { *shared.cones.index_unchecked(at as usize) })
 }
 
-/// Where on the film a pixel of a launch is.
+/// The place of a launch's pixel on the film.
 #[inline]
 fn film(launch: &Launch, pixel: UVec2) -> Vec2 {
     Camera::film(launch.tile_origin + pixel, launch.image_size)

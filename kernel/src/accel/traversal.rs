@@ -6,22 +6,22 @@ use crate::accel::walk::{is_occluded_in_tree, nearest_hit_in_tree};
 use crate::hit::Hit;
 use crate::ray::Ray;
 
-/// Finds what rays hit. A host may have a faster one than the kernel's, with the same answers. A hit that names no sphere is
-/// one of a sphere of zeros, nowhere.
+/// Finds what rays hit. A host may have a faster traversal than the kernel's, with the same
+/// answers. If a hit's index is beyond the spheres, the sphere is read as zeros.
 pub trait Traversal {
-    /// The nearest hit; of two equally near, the one of lower index.
+    /// The nearest hit; of two equally near hits, the one with the lower index.
     fn nearest_hit(&self, ray: &Ray, spheres: &MovingSpheres<'_>) -> Hit;
 
     /// Whether the ray hits anything.
     fn is_occluded(&self, ray: &Ray, spheres: &MovingSpheres<'_>) -> bool;
 }
 
-/// One box and one sphere after the other.
+/// Tests one box and one sphere after the other: the kernel's own traversal.
 #[derive(Clone, Copy, Debug)]
 pub struct OneByOne<'a> {
     /// The rung, a value of [`Rung::to_u32`](crate::Rung::to_u32).
     pub rung: u32,
-    /// 1 if the spheres stand in the tree, else every one is tested.
+    /// 1 if the tree holds the spheres; otherwise every sphere is tested.
     pub has_tree: u32,
     /// The tree.
     pub tree: Tree<'a>,

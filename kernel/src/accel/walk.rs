@@ -1,13 +1,15 @@
-//! A ray's way through a tree, front to back. Runs on the GPU and on the CPU.
+//! Walks through a tree with a ray, front to back. Runs on the GPU and on the CPU.
 //!
-//! Children are visited in the order of the octant of the ray's direction, and the stack holds whole groups of
-//! children (H. Ylitie, T. Karras, S. Laine, Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs, HPG 2017).
+//! Children are visited in the order given by the octant of the ray's direction, and the stack
+//! holds whole groups of children (H. Ylitie, T. Karras, S. Laine, Efficient Incoherent Ray
+//! Traversal on GPUs Through Compressed Wide BVHs, HPG 2017).
 //!
-//! # No walk gets lost
+//! # Why a walk stays in bounds
 //!
-//! Walks take a [`Tree`], whose nodes are known to be one: each is the child of one other that stands before it, and none
-//! is deeper than there is room for on a stack. What links say of spheres need not fit the spheres that a walk is given: on the CPU
-//! an index beyond them is cut to the last, on a GPU the driver checks it (`robustBufferAccess`).
+//! A walk takes a [`Tree`], whose nodes were checked: each is the child of one node that stands
+//! before it, and none is deeper than the stack has room for. The indices of spheres need not fit
+//! the spheres that a walk is given: on the CPU an index beyond them becomes the last, on a GPU the
+//! driver checks it (`robustBufferAccess`).
 
 use core::mem::MaybeUninit;
 
@@ -23,8 +25,8 @@ use crate::hit::Hit;
 use crate::precision::{intersect, intersect_at_once, is_lazy};
 use crate::ray::Ray;
 
-/// The nearest hit of `ray` on this rung among the spheres of a tree; of two equally near, the one
-/// of lower index.
+/// The nearest hit of `ray` on this rung among the spheres of a tree; of two equally near hits, the
+/// one with the lower index.
 #[inline]
 #[must_use]
 pub fn nearest_hit_in_tree<S: Spheres + ?Sized>(
@@ -48,16 +50,17 @@ pub fn is_occluded_in_tree<S: Spheres + ?Sized>(
     walk::<true, S>(rung, ray, tree, spheres, &mut Work::default()).is_some()
 }
 
-/// What a ray took.
+/// How many tests a ray took.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Work {
-    /// The nodes whose boxes it was tested against.
+    /// The nodes whose boxes the ray was tested against.
     pub nodes: u32,
-    /// The spheres that it was tested against.
+    /// The spheres that the ray was tested against.
     pub spheres: u32,
 }
 
-/// What `ray` takes in a tree; with `any`, up to the first hit that is found.
+/// How many tests `ray` takes in a tree: to find the nearest hit, or with `any` the first hit at
+/// all.
 #[must_use]
 pub fn work_in_tree<S: Spheres + ?Sized>(
     rung: u32,
@@ -75,14 +78,15 @@ pub fn work_in_tree<S: Spheres + ?Sized>(
     work
 }
 
-/// The index of the sphere that has this bit in a node's links.
+/// The index of the sphere whose bit in `links.z` is this one, cut to `count`.
 #[inline]
 fn sphere_at(links: UVec4, bit: u32, count: u32) -> u32 {
     let before = (links.z & ((1 << bit) - 1)).count_ones();
     within(links.y.wrapping_add(before), count)
 }
 
-/// The two lowest bits of some that are set, the same twice if there is one; and the others.
+/// The numbers of the two lowest bits that are set (the same twice if only one is), and the
+/// remaining bits.
 #[inline]
 fn take_two(bits: u32) -> (u32, u32, u32) {
     let one = lowest_bit(bits);
@@ -95,8 +99,8 @@ fn take_two(bits: u32) -> (u32, u32, u32) {
     (one, two, rest)
 }
 
-/// An index below a length that is not zero. The spheres need not be those of the tree, and a GPU's buffers are checked by
-/// their driver (`robustBufferAccess`).
+/// Cuts an index to below `length`, which is not zero, because the spheres need not be those of the
+/// tree. On a GPU the driver checks the index (`robustBufferAccess`).
 #[inline]
 fn within(index: u32, length: u32) -> u32 {
     if cfg!(target_arch = "spirv") {
@@ -106,7 +110,7 @@ fn within(index: u32, length: u32) -> u32 {
     }
 }
 
-/// The nearest hit, or any.
+/// The nearest hit, or with `ANY` any hit.
 #[inline]
 fn walk<const ANY: bool, S: Spheres + ?Sized>(
     rung: u32,
@@ -119,38 +123,38 @@ fn walk<const ANY: bool, S: Spheres + ?Sized>(
     if (nodes.len() <= Node::ROOT as usize) | (count == 0) {
         return Hit::NONE;
     }
-    // SAFETY: there are more than one.
+    // SAFETY: there is more than one node.
     let world = Extent::of_node(unsafe { nodes.index_unchecked(0) });
     let slabs = Slabs::of(rung, ray, &world);
     let line = Line::of(ray);
-    // Rungs that take long are asked about the nearest sphere only, when it is found.
+    // Lazy rungs are slow: they are evaluated once, for the nearest sphere, when it is found.
     let is_lazy = is_lazy(rung);
     let ray = &Ray {
         t_max: ray.end(),
         ..*ray
     };
-    // What changes on the way is kept apart from what does not, and is little: compilers for GPUs carry a
-    // whole struct from round to round if any of it changes, and copy what they carry. Inner loops end where
-    // they may go on, for the same reason.
+    // What changes during the walk is kept in a few separate variables: if one field of a struct
+    // changes, compilers for GPUs carry the whole struct from iteration to iteration, and copy it.
+    // For the same reason, inner loops test their end at the end of the body.
     //
-    // The nearest answer so far, and its sphere.
+    // The nearest hit so far, and its sphere.
     let mut t = ray.t_max;
     let mut hit_sphere = 0;
-    // The end of the ray, as the line counts it; and if it is lazy where the nearest sphere may begin, which is before
-    // the end if the rung was not asked.
+    // The end of the ray in the line's parameters. If the rung is lazy, `low` is where the nearest
+    // sphere may begin; it is below `end` as long as the rung was not evaluated for that sphere.
     let mut end = t * line.unit;
     let mut low = end;
 
-    // Below the last group is an empty one.
+    // An empty group lies at the bottom of the stack.
     let mut stack = [MaybeUninit::<UVec2>::uninit(); Node::MAX_DEPTH + 1];
     stack[0] = MaybeUninit::new(UVec2::ZERO);
     let mut height = 1;
-    // A group of nodes: where the first is, and which are to be visited (bits 4c, c in the order of the visit),
-    // which are there (bits 4c + 1). The root is one alone.
+    // A group of nodes: the index of the first, which are still to be visited (bits 4c, c in the
+    // order of the visit), and which exist (bits 4c + 1). The root is a group of one.
     let mut first = Node::ROOT;
     let mut group = 0x1000_0000_u32;
     loop {
-        // The next to be visited.
+        // The next node to visit.
         let bit = highest_bit(group & FIRST_OF_FOUR);
         group ^= 1 << bit;
         if (group & FIRST_OF_FOUR != 0) & (height <= Node::MAX_DEPTH) {
@@ -172,8 +176,9 @@ fn walk<const ANY: bool, S: Spheres + ?Sized>(
         let mut met = met & (inner >> 1);
         work.spheres += candidates.count_ones();
         if (is_lazy | ANY) & (candidates != 0) {
-            // Threads of a GPU wait for each other: few operations on all spheres, and many on the few that are left.
-            // Two at a time, so that what one waits for does not hold up the other.
+            // The threads of a GPU wait for each other. So all spheres are culled with few
+            // operations first, and the few that are left get the many operations. Two spheres at a
+            // time, so that loading one does not hold up the other.
             let mut leaves = candidates;
             candidates = 0;
             loop {
@@ -208,7 +213,7 @@ fn walk<const ANY: bool, S: Spheres + ?Sized>(
         }
         if (is_lazy | ANY) & (candidates != 0) {
             loop {
-                // The nearest sphere comes first, if its rung was not asked.
+                // The nearest sphere comes first, if the rung was not evaluated for it.
                 let index = if is_lazy & (low < end) {
                     hit_sphere
                 } else {
@@ -224,15 +229,15 @@ fn walk<const ANY: bool, S: Spheres + ?Sized>(
                 }
                 end = t * line.unit;
                 low = end;
-                // Not by making `candidates` zero above: compilers leave the loop from there then, which Mesa 22's
-                // llvmpipe was seen to get wrong.
+                // Setting `candidates` to zero above would not do: compilers then leave the loop
+                // from there, which Mesa 22's llvmpipe was seen to get wrong.
                 if (candidates == 0) | (ANY & (t < ray.t_max)) {
                     break;
                 }
             }
         }
         if !(is_lazy | ANY) & (candidates != 0) {
-            // Most are hits, and a hit is cheap: there is nothing to sift.
+            // Most candidates are hits, and this rung is fast: culling first does not pay.
             loop {
                 let (one, two, rest) = take_two(candidates);
                 candidates = rest;
@@ -256,8 +261,8 @@ fn walk<const ANY: bool, S: Spheres + ?Sized>(
             end = t * line.unit;
         }
         if ANY & ((t < ray.t_max) | (is_lazy & (low < end))) {
-            // Nothing is left to be visited. A `return` out of both loops was seen to be compiled wrongly, by
-            // Mesa 22's llvmpipe.
+            // Nothing is left to visit. Mesa 22's llvmpipe was seen to compile a `return` out of
+            // both loops wrongly.
             (met, height) = (0, 1);
         }
 
@@ -265,7 +270,8 @@ fn walk<const ANY: bool, S: Spheres + ?Sized>(
         group = slabs.in_order(met) | inner;
         if met == 0 {
             height -= 1;
-            // SAFETY: `height` is below the array's length, and what is there was put there.
+            // SAFETY: `height` is below the array's length, and every element below the top was
+            // written.
             let next = unsafe { (*stack.index_unchecked(height)).assume_init() };
             first = next.x;
             group = next.y;
@@ -279,7 +285,7 @@ fn walk<const ANY: bool, S: Spheres + ?Sized>(
     if is_unasked & !ANY {
         // SAFETY: `hit_sphere` is below the number of spheres.
         let sphere = unsafe { spheres.sphere(hit_sphere) };
-        // No hit after all only where numbers are beyond what bounds are made for.
+        // This is a miss only where numbers are beyond the range that the bounds are derived for.
         t = intersect(rung, sphere, ray);
     }
     if (t < ray.t_max) | (is_unasked & ANY) {

@@ -1,12 +1,12 @@
 //! [`DoubleSingle`]: a number as the unevaluated sum of two floats. Runs on the GPU and on the
 //! CPU.
 //!
-//! The algorithms and their bounds are those of M. Joldes, J.-M. Muller and V. Popescu, Tight
-//! and rigorous error bounds for basic building blocks of double-word arithmetic, ACM Trans.
-//! Math. Softw. 44 (2017), with u = 2⁻²⁴: the sum is off by at most 3u² / (1 − 4u), the product
-//! by 7u², the product with a float by 3u², relative to the result. Quotient and square root start from the device's own, which
-//! may be off by a few units in the last place, and correct it once: their relative error is the
-//! square of the start's plus a few u².
+//! The algorithms and their bounds are those of M. Joldes, J.-M. Muller and V. Popescu, Tight and
+//! rigorous error bounds for basic building blocks of double-word arithmetic, ACM Trans. Math.
+//! Softw. 44 (2017), with u = 2⁻²⁴: the sum is off by at most 3u² / (1 − 4u), the product by 7u²,
+//! the product with a float by 3u², relative to the result. Quotient and square root start from the
+//! device's own result, which may be off by a few units in the last place, and correct it once:
+//! their relative error is the square of the start's error plus a few u².
 
 // On the CPU, std has `f32::sqrt`.
 #[cfg(target_arch = "spirv")]
@@ -18,14 +18,14 @@ use super::strict::{add, mul};
 /// The number `high + low`, with `high` the float nearest to it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct DoubleSingle {
-    /// The float nearest to the number.
+    /// The float that is nearest to the number.
     pub high: f32,
-    /// What is left.
+    /// The number minus `high`.
     pub low: f32,
 }
 
 impl DoubleSingle {
-    /// The float, exactly.
+    /// The float as a pair, exactly.
     #[inline]
     #[must_use]
     pub fn from_float(value: f32) -> Self {

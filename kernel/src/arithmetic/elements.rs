@@ -1,11 +1,12 @@
-//! Elements of arrays and slices, by indices that no compiler sees through, without a panic. Runs on the GPU and on the CPU.
+//! Elements of arrays and slices by index, without a panic. Runs on the GPU and on the CPU.
 //!
-//! What might panic leaves its mark on all of a kernel: the thread gives up there, and every loop around it asks whether it has.
+//! A possible panic costs time in the whole kernel: it ends the thread there, and every loop around
+//! it checks whether that has happened.
 
 use bytemuck::Zeroable;
 use spirv_std::arch::IndexUnchecked;
 
-/// An element; the last for an index beyond it.
+/// The element at `index`; the last element for an index beyond it.
 ///
 /// ```compile_fail
 /// // An array without elements has no last one.
@@ -15,24 +16,25 @@ use spirv_std::arch::IndexUnchecked;
 #[must_use]
 pub fn get<T: Copy, const N: usize>(array: &[T; N], index: usize) -> T {
     const { assert!(N > 0, "an array without elements has none to read") };
-    // SAFETY: below N.
+    // SAFETY: the index is below N.
     unsafe { *array.index_unchecked(index.min(N - 1)) }
 }
 
-/// Writes what [`get`] reads.
+/// Writes the element that [`get`] reads.
 #[inline]
 pub fn set<T, const N: usize>(array: &mut [T; N], index: usize, value: T) {
     const { assert!(N > 0, "an array without elements has none to write") };
-    // SAFETY: below N.
+    // SAFETY: the index is below N.
     unsafe { *array.index_unchecked_mut(index.min(N - 1)) = value };
 }
 
-/// An element of a slice, which a launch binds; for an index beyond it, zeros: a GPU's driver sees to that (`robustBufferAccess`).
+/// The element at `index` of a slice; zeros for an index beyond it. On a GPU the slice is a buffer
+/// that the launch binds, and the driver ensures this (`robustBufferAccess`).
 #[inline]
 #[must_use]
 pub fn read<T: Zeroable + Copy>(slice: &[T], index: usize) -> T {
     #[cfg(target_arch = "spirv")]
-    // SAFETY: what is beyond a buffer the driver does not read.
+    // SAFETY: the driver does not read beyond a buffer.
     return unsafe { *slice.index_unchecked(index) };
     #[cfg(not(target_arch = "spirv"))]
     slice.get(index).copied().unwrap_or(T::zeroed())

@@ -1,4 +1,4 @@
-//! Error-free transformations: a float operation's result together with its exact rounding
+//! Error-free transformations: the result of a float operation together with its exact rounding
 //! error. Runs on the GPU and on the CPU.
 //!
 //! D. E. Knuth, The Art of Computer Programming, vol. 2, 4.2.2 (the sum); T. J. Dekker, A
@@ -6,12 +6,12 @@
 //! (the ordered sum, the split and the product). The names follow J. R. Shewchuk, Adaptive
 //! precision floating-point arithmetic, Discrete Comput. Geom. 18 (1997) 305.
 //!
-//! Each holds unless a term overflows or its error is subnormal. The product does without a fused
-//! multiply-add, which Vulkan does not promise to be fused.
+//! Each is exact unless a term overflows or its error is subnormal. The product does not use a
+//! fused multiply-add, because Vulkan does not promise that it is fused.
 
 use super::strict::{add, mul, sub};
 
-/// `a + b` as its rounded value and the error of that; exact for any two floats.
+/// `a + b` as its rounded value and the rounding error; exact for any two floats.
 #[inline]
 #[must_use]
 pub fn two_sum(a: f32, b: f32) -> (f32, f32) {
@@ -21,7 +21,7 @@ pub fn two_sum(a: f32, b: f32) -> (f32, f32) {
     (sum, add(sub(a, a_in_sum), sub(b, b_in_sum)))
 }
 
-/// `a - b` as its rounded value and the error of that; exact for any two floats.
+/// `a - b` as its rounded value and the rounding error; exact for any two floats.
 #[inline]
 #[must_use]
 pub fn two_diff(a: f32, b: f32) -> (f32, f32) {
@@ -34,7 +34,7 @@ pub fn two_diff(a: f32, b: f32) -> (f32, f32) {
     )
 }
 
-/// `a + b` for |a| ≥ |b| or a = 0, with half the operations.
+/// As [`two_sum`], for |a| ≥ |b| or a = 0, with half the operations.
 #[inline]
 #[must_use]
 pub fn fast_two_sum(a: f32, b: f32) -> (f32, f32) {
@@ -42,7 +42,7 @@ pub fn fast_two_sum(a: f32, b: f32) -> (f32, f32) {
     (sum, sub(b, sub(sum, a)))
 }
 
-/// The float in two halves of 12 bits each, whose products with other halves are exact.
+/// Splits the float into two halves of 12 bits each, whose products with other halves are exact.
 /// Overflows above 2¹¹⁵.
 #[inline]
 #[must_use]
@@ -53,8 +53,8 @@ pub fn split(a: f32) -> (f32, f32) {
     (high, sub(a, high))
 }
 
-/// `a · b` as its rounded value and the error of that; exact while the error is normal or zero,
-/// which |a·b| ≥ 2⁻⁷⁹ ensures (and, on devices that keep subnormals, |a·b| ≥ 2⁻¹⁰²).
+/// `a · b` as its rounded value and the rounding error. It is exact if the error is normal or zero,
+/// which |a·b| ≥ 2⁻⁷⁹ ensures (on devices that keep subnormal numbers, |a·b| ≥ 2⁻¹⁰²).
 #[inline]
 #[must_use]
 pub fn two_product(a: f32, b: f32) -> (f32, f32) {

@@ -2,11 +2,11 @@
 //!
 //! | module | holds |
 //! | --- | --- |
-//! | [`strict`] | sum, difference and product that no compiler may rearrange |
+//! | [`strict`] | sum, difference and product that no compiler rearranges |
 //! | [`error_free`] | the exact error of a sum, a difference, a product |
-//! | [`distill`] | the sum of many floats, whatever cancels |
-//! | [`double_single`] | numbers as a sum of two floats, about 48 bits |
-//! | [`elements`] | elements without a panic |
+//! | [`distill`] | the accurate sum of many floats, whatever cancels |
+//! | [`double_single`] | numbers as sums of two floats, about 48 bits |
+//! | [`elements`] | elements of arrays and slices, read and written without a panic |
 
 pub mod distill;
 pub mod double_single;
@@ -16,5 +16,5 @@ pub mod strict;
 
 pub use double_single::DoubleSingle;
 
-/// The unit roundoff of `f32`: 2⁻²⁴, by which one operation may be off.
+/// The unit roundoff of `f32`, 2⁻²⁴: the largest relative error of one operation.
 pub const U: f32 = 1.0 / (1 << 24) as f32;

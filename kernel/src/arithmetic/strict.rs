@@ -1,11 +1,11 @@
-//! Sum, difference and product of floats, each rounded once and by itself. Runs on the GPU and
-//! on the CPU.
+//! Sum, difference and product of floats, each rounded once and on its own. Runs on the GPU and on
+//! the CPU.
 //!
 //! A shader compiler may fuse a product with a sum, cancel `(a + b) - a`, or reorder, and drivers
-//! do: without a word to the contrary they delete the error terms that compensated arithmetic
-//! lives on. The word is the decoration `NoContraction` on each operation, and a difference must
-//! be an `OpFSub`: written as the sum of a negation it is simplified all the same. rustc never
-//! contracts or reorders, so that the CPU's versions are the plain operators.
+//! do: if nothing forbids it, they delete the error terms that compensated arithmetic depends on.
+//! The decoration `NoContraction` on each operation forbids it. A difference must be an `OpFSub`: a
+//! sum with a negated operand is simplified despite the decoration. rustc never contracts or
+//! reorders, so the CPU's versions are the plain operators.
 
 macro_rules! strict {
     ($(#[$docs:meta])* $name:ident, $float:ident, $bits:literal, $opcode:literal, $operator:tt) => {

@@ -1,28 +1,40 @@
-//! [`Bounds`]: what few operations tell of a ray and a sphere, for all rungs from
-//! [`Rung::Robust`](crate::Rung::Robust) up: that they miss, or that they hit, and about where. Runs on the GPU and on
-//! the CPU.
+//! [`Bounds`]: what a few operations tell about a ray and a sphere, for all rungs from
+//! [`Rung::Robust`](crate::Rung::Robust) up: whether they miss for certain, whether they hit for
+//! certain, and between which parameters. Runs on the GPU and on the CPU.
 //!
-//! A walk through a tree keeps the sphere that is nearest by its bounds, and asks the rung once, at its end,
-//! or where bounds leave it open.
+//! A walk through a tree keeps the sphere that is nearest by its bounds. It evaluates the rung
+//! once, at its end, and where the bounds decide nothing.
 //!
 //! # The bounds
 //!
-//! With u = 2⁻²⁴, o = C − O, d the direction scaled by a power of two so that 1 ≤ |d| < 2√3, a = d·d, the
-//! middle m = o·d / a, the foot of the perpendicular f = o − m d, and q = r² − f·f. In floats, fused or not,
-//! quotients off by 2.5 units and roots by 4: m is off by 14u|o|/|d|, f by 17u|o| and q by
+//! Let u = 2⁻²⁴ and o = C − O. Let d be the direction, scaled by a power of two so that
+//! 1 ≤ |d| < 2√3, and a = d·d. The middle is m = o·d / a, the foot of the perpendicular is
+//! f = o − m d, and q = r² − f·f.
+//!
+//! **What floats are off by.** Operations may be fused or not; quotients are off by 2.5 units in
+//! the last place, roots by 4. Then m is off by 14u|o|/|d|, f by 17u|o|, and q by
 //!
 //! > E = 34u|f||o| + 289u² o·o + 3u f·f + 3u r² ≤ 2⁻⁹ f·f + 2⁻²⁹ o·o + 3u r²,
 //!
-//! as 2xy ≤ kx² + y²/k, k = 2¹⁰. No rung from robust up, whose formula is this one or a better, is farther off. So
-//! with the doubt e = 2⁻⁶ r² + 2⁻²⁸ o·o all of them have q < 0 where q < −e here, and q > 0 where q > e: E is at most e/2
-//! then, f·f being r² − q.
+//! because 2xy ≤ kx² + y²/k with k = 2¹⁰. The rungs from robust up use this formula or a better
+//! one, so none of them is farther off.
 //!
-//! Where q > e, |f| ≤ r, √q ≥ r/8 and √q ≥ 2⁻¹⁴|o|, so that √q is off by E/√q ≤ 273u|o| + 48u r here and there together.
-//! With what m, the root and the sum are off by, and robust's own 16u max(|o|, r) and 8u|o| for its c and b,
-//! where the ray enters, at m − √(q/a), is the same to within 512u(|o| + r)/|d| for all of them, and |o| ≤ m|d| + r.
+//! **Hit or miss.** Take the doubt e = 2⁻⁶ r² + 2⁻²⁸ o·o. Where q < −e here, all of these rungs
+//! have q < 0; where q > e here, all of them have q > 0. For E is at most e/2 then, because
+//! f·f = r² − q.
 //!
-//! A sphere is behind its ray, too, where o·d < 0 and c = o·o − r² > 32u (o·o + r²): the foot's error is 7u|o| only
-//! where o·d is of the size of its own error, so that any hit would need (8u)² o·o ≥ c.
+//! **Where the ray enters.** Where q > e:
+//!
+//! - |f| ≤ r, √q ≥ r/8 and √q ≥ 2⁻¹⁴|o|. So √q is off by E/√q ≤ 273u|o| + 48u r, here and in the
+//!   rung together.
+//! - To that come the errors of m, of the root and of the sum, and robust's own 16u max(|o|, r) and
+//!   8u|o| for its c and b.
+//! - Together, the parameter at which the ray enters, m − √(q/a), is the same to within 512u(|o| +
+//!   r)/|d| for all of these rungs; and |o| ≤ m|d| + r.
+//!
+//! **Behind the ray.** A sphere is behind its ray for certain where o·d < 0 and c = o·o − r² > 32u
+//! (o·o + r²). A hit would need an o·d of the size of its own error. There the foot is off by only
+//! 7u|o|, so that a hit would need (8u)² o·o ≥ c.
 
 use glam::Vec3;
 
@@ -31,14 +43,15 @@ use crate::lane::{Lane, Lane3};
 use crate::ray::Ray;
 use crate::sphere::Sphere;
 
-/// What is added to and taken from m − √(q/a), in parts of m: 512u.
+/// The bounds are m − √(q/a) plus and minus `OFF` |m| + [`OFF_BY_RADIUS`] r. This is 512u.
 pub const OFF: f32 = 1.0 / (1 << 15) as f32;
-/// The same, in parts of r: 1024u.
+/// The share of r in the distance of the bounds from m − √(q/a), see [`OFF`]: 1024u.
 pub const OFF_BY_RADIUS: f32 = 1.0 / (1 << 14) as f32;
-/// An origin is outside for certain where o·o, times this, is more than r²: 1 − 64u.
+/// An origin is outside for certain where o·o times this is more than r²: 1 − 64u.
 pub const OUTSIDE: f32 = 1.0 - 1.0 / (1 << 18) as f32;
 
-/// The doubt e about q, of o·o and r²; and what squares must be above for their errors to be relative.
+/// The doubt e about q, from o·o and r². The constant that is added keeps squares decisive only
+/// where they are large enough for their errors to be relative.
 #[inline(always)]
 #[must_use]
 pub fn doubt<L: Lane>(oo: L, rr: L) -> L {
@@ -46,22 +59,23 @@ pub fn doubt<L: Lane>(oo: L, rr: L) -> L {
     oo * of(1.0 / (1 << 28) as f32) + (rr * of(1.0 / (1 << 6) as f32) + of(1e-30))
 }
 
-/// What is the same of a ray from sphere to sphere.
+/// What is the same for a ray from sphere to sphere, in lanes.
 #[derive(Clone, Copy, Debug)]
 pub struct Aim<L> {
-    /// The direction, whose largest component is between 1 and 2.
+    /// The direction, scaled so that its largest component is between 1 and 2.
     pub direction: Lane3<L>,
-    /// One over its squared length.
+    /// One over the direction's squared length.
     pub inverse: L,
-    /// The start of the ray's interval, as the direction counts it.
+    /// The start of the ray's interval, in parameters of the scaled direction.
     pub start: L,
     /// What o·d must be below for a sphere to be behind.
     pub behind: L,
 }
 
 impl<L: Lane> Aim<L> {
-    /// Whether a sphere is behind its ray for certain, or begins beyond `end`, as the direction counts it: no point of a sphere is nearer than
-    /// o·d/a − r/|d|, |d| is at least one, and what the middle is off by is less than what bounds allow for.
+    /// Whether a sphere is behind its ray for certain, or begins beyond `end`, a parameter of the
+    /// scaled direction. No point of a sphere is nearer than o·d/a − r/|d|, |d| is at least one,
+    /// and the middle is off by less than what the bounds allow for.
     #[inline(always)]
     #[must_use]
     pub fn is_out_of_reach(&self, target: &Target<L>, radius: L, end: L) -> L::Mask {
@@ -74,8 +88,9 @@ impl<L: Lane> Aim<L> {
         (middle - r - off).simd_gt(end) | is_behind
     }
 
-    /// What is certain of a sphere, of o from the ray's origin to its centre, and of its radius: misses, hits, low and high, as
-    /// [`Bounds`] has them. NaN makes nothing certain.
+    /// The bounds of a sphere from o, the vector from the ray's origin to its centre, and its
+    /// radius: misses, hits, low and high, as in [`Bounds`]. With NaN neither a miss nor a hit is
+    /// certain.
     #[inline(always)]
     #[must_use]
     pub fn bounds(&self, o: Lane3<L>, radius: L) -> (L::Mask, L::Mask, L, L) {
@@ -96,32 +111,34 @@ impl<L: Lane> Aim<L> {
     }
 }
 
-/// A ray, for one sphere after the other.
+/// A ray, prepared for testing it against one sphere after another.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Line {
     /// Where the ray starts.
     pub origin: Vec3,
-    /// Its direction, whose largest component was brought between 1 and 2.
+    /// The ray's direction, scaled so that its largest component is between 1 and 2.
     pub direction: Vec3,
     /// The direction's squared length.
     pub a: f32,
-    /// One over it.
+    /// One over `a`.
     pub inverse: f32,
-    /// What a parameter of the ray is, times this, as this direction counts it: a power of two.
+    /// A parameter t of the ray is t · `unit` in parameters of the scaled direction; a power of
+    /// two.
     pub unit: f32,
-    /// The start of the ray's interval, as this direction counts it.
+    /// The start of the ray's interval, in parameters of the scaled direction.
     pub start: f32,
     /// What o·d must be below for a sphere to be behind.
     pub behind: f32,
 }
 
-/// What is certain of a sphere. Neither, if the rung is to be asked.
+/// What is certain about a ray and a sphere. If neither `misses` nor `hits` is true, the rung
+/// decides.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
     /// Every rung misses.
     pub misses: bool,
-    /// Every rung finds that the ray enters the sphere after its start, between `low` and `high`, as the line's
-    /// direction counts it.
+    /// Every rung finds that the ray enters the sphere after its start, between `low` and `high`,
+    /// in parameters of the scaled direction.
     pub hits: bool,
     /// See `hits`.
     pub low: f32,
@@ -139,12 +156,12 @@ impl Bounds {
 }
 
 impl Line {
-    /// Of a ray.
+    /// Prepares a ray.
     #[inline(always)]
     #[must_use]
     pub fn of(ray: &Ray) -> Self {
         let scale = power_of_two_under(ray.direction);
-        // One over it: exponents that add up to those of one.
+        // 1 / scale: the exponents add up to twice that of one.
         let unit = f32::from_bits(0x7f00_0000_u32.wrapping_sub(scale.to_bits()));
         let direction = ray.direction * scale;
         let a = direction.dot(direction);
@@ -159,8 +176,8 @@ impl Line {
         }
     }
 
-    /// Whether any rung may find a hit, by the discriminant of [`candidates`](crate::cull::discriminant) and its slack. Where a
-    /// number is none, it is to be asked.
+    /// Whether any rung may find a hit, by the [discriminant](crate::cull::discriminant) and its
+    /// slack. NaN counts as a possible hit.
     #[inline]
     #[must_use]
     pub fn may_hit(&self, sphere: Sphere) -> bool {
@@ -180,7 +197,7 @@ impl Line {
         }
     }
 
-    /// What is certain of a sphere. Numbers that are none make nothing certain.
+    /// The bounds of a sphere. With NaN neither a miss nor a hit is certain.
     #[inline]
     #[must_use]
     pub fn bounds(&self, sphere: Sphere) -> Bounds {

@@ -1,15 +1,23 @@
-//! Brute force at a GPU's rate: four operations a test that tell which spheres a rung must be asked about.
-//! Runs on the GPU and on the CPU.
+//! [`Cone`]: a test of four operations that tells which spheres a rung must be evaluated for, for
+//! brute force at a GPU's rate. Runs on the GPU and on the CPU.
 //!
-//! Seen from an eye outside of it, a sphere fills a cone. With o = C − O, c = o·o − r² and h = o/√c, a line along d
-//! that goes forward meets the sphere where d·h ≥ |d|, which is cos θ ≥ √(1 − r²/o·o). h is shared by all rays from one eye,
-//! and |d| by all spheres.
+//! Seen from an eye outside of it, a sphere fills a cone. With o = C − O, c = o·o − r² and
+//! h = o/√c, a line along d that goes forward meets the sphere where d·h ≥ |d|, which is cos
+//! θ ≥ √(1 − r²/o·o). All rays from one eye share h, and all spheres share |d|.
 //!
-//! In 32-bit floats, u = 2⁻²⁴, cos θ is off by 16u at most: o by u, 1/√c by 4u, which are the two units in the last place that Vulkan
-//! allows, their product by u, and the sum of the three products by 3u of |d||h|; |d| by 7u, of which 5u are the root's. c is off by 7u (o·o + r²), and
-//! what a rung calls a hit the exact numbers may miss by 24u (o·o + r²), as [`slabs`](crate::accel::slabs) says. Roots of numbers up to 1 that are
-//! apart by δ are apart by δ/2 and more; c is therefore taken less by 64u (o·o + r²), (64 − 7 − 24)/2 being 16.5, and no rung's hit is passed by. Behind an eye
-//! that is outside by as much as that no rung hits.
+//! In 32-bit floats, with u = 2⁻²⁴:
+//!
+//! - cos θ is off by 16u at most: o by u; 1/√c by 4u, which are the two units in the last place
+//!   that Vulkan allows; their product by u; the sum of the three products by 3u of |d||h|; |d| by
+//!   7u, of which 5u are the root's.
+//! - c is off by 7u (o·o + r²).
+//! - A rung may find a hit that exact arithmetic misses by 24u (o·o + r²), as
+//!   [`slabs`](crate::accel::slabs) says.
+//! - Roots of numbers up to 1 that are δ apart are at least δ/2 apart.
+//!
+//! So 64u (o·o + r²) is subtracted from c: (64 − 7 − 24)/2 is 16.5, and no rung's hit is lost. No
+//! rung hits a sphere that is behind an eye, if the eye is outside of the sphere by as much as
+//! that.
 
 use glam::{Vec3, Vec4};
 
@@ -22,12 +30,14 @@ const SLACK: f32 = 1.0 / (1 << 18) as f32;
 const SMALLEST: f32 = 1.0 / LARGEST;
 const LARGEST: f32 = (1_u128 << 100) as f32;
 
-/// What a sphere fills seen from an eye: h, and what is added to d·h, which decides alone where it is not zero.
+/// The cone that a sphere fills, seen from an eye: h, and a number that is added to d·h. Where that
+/// number is not zero, it alone decides.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cone(Vec4);
 
 impl Cone {
-    /// Of a sphere; where the eye is in it, or near, or too far away for 32 bits, all rays meet it.
+    /// The cone of a sphere. If the eye is in the sphere, or near it, or too far away for 32 bits,
+    /// all rays meet the cone.
     #[inline]
     #[must_use]
     pub fn of(sphere: Sphere, eye: Vec3) -> Self {
@@ -41,21 +51,21 @@ impl Cone {
         }
     }
 
-    /// Of no sphere: every ray misses.
+    /// A cone that every ray misses, for no sphere.
     #[inline]
     #[must_use]
     pub fn none() -> Self {
         Self(Vec3::ZERO.extend(-f32::MAX))
     }
 
-    /// As one load.
+    /// The cone as one vector, for a single 16-byte store.
     #[inline]
     #[must_use]
     pub fn to_vec4(self) -> Vec4 {
         self.0
     }
 
-    /// Out of one load.
+    /// The cone from the vector that [`Cone::to_vec4`] gave.
     #[inline]
     #[must_use]
     pub fn from_vec4(vector: Vec4) -> Self {
@@ -63,7 +73,7 @@ impl Cone {
     }
 }
 
-/// A ray from the eye: d, and |d|.
+/// A ray from the eye: its direction d, and |d|.
 #[derive(Clone, Copy, Debug)]
 pub struct Sight {
     direction: Vec3,
@@ -71,7 +81,8 @@ pub struct Sight {
 }
 
 impl Sight {
-    /// Along a direction, of a length up to 2⁸⁰. Where that or its square is beyond what roots are sure of, every sphere is met.
+    /// Prepares a ray along a direction, whose length is at most 2⁸⁰. If the square of the length
+    /// is too small or too large for the root, the ray counts as meeting every sphere.
     #[inline]
     #[must_use]
     pub fn along(direction: Vec3) -> Self {
@@ -84,7 +95,8 @@ impl Sight {
         Self { direction, length }
     }
 
-    /// Moves in from the right, by the sign of what is missing, whether the ray misses a sphere for certain.
+    /// Shifts `before` left by one bit and puts in 1 if the ray misses the sphere for certain: the
+    /// sign of d·h − |d|.
     #[inline]
     #[must_use]
     pub fn misses(&self, before: u32, cone: Cone) -> u32 {

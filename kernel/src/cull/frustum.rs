@@ -1,15 +1,28 @@
-//! [`Frustum`]: four planes around the rays of a rectangle of the film. Runs on the GPU and on the CPU.
+//! [`Frustum`]: four planes around the rays of a rectangle of the film. Runs on the GPU and on the
+//! CPU.
 //!
-//! A camera's rays go along F + x R + y U. Those with x from x₀ on are on one side of the plane through the eye along
-//! F + x₀ R and U, whatever y is: of its normal n = (F + x₀ R) × U the product with a ray's direction is (x − x₀) n·R. Three
-//! more such planes bound a rectangle. A sphere is beyond a plane, and met by none of the rays, where its centre is by
-//! more than its radius: with o = C − O and s = o·n, n of unit length and inward, where s < 0 and s² > r².
+//! A camera's rays go along F + x R + y U. Take the plane through the eye along F + x₀ R and U. The
+//! rays with x ≥ x₀ are on one side of it, whatever y is: its normal is n = (F + x₀ R) × U, and the
+//! product of n and a ray's direction is (x − x₀) n·R. Three more such planes bound a rectangle of
+//! the film.
 //!
-//! In 32-bit floats, u = 2⁻²⁴, s is off by 4u|o| for its terms. A plane is taken only where F + x₀ R is at least half as long as its terms
-//! would be at a right angle, is apart from U by 30° and more, and n is off the plane across R by as much: then n is off by 17u, and
-//! the terms of every direction inside are at most 17 times as long as itself, so that rays leave the plane by 51u|o|.
-//! That makes 144u o·o of s². What a rung calls a hit the exact numbers may miss by 24u (o·o + r²), as [`slabs`](crate::accel::slabs) says. r² is
-//! therefore taken more by 256u (o·o + r²), and no rung's hit is lost.
+//! Let o = C − O and s = o·n, with n of unit length and pointing inward. A sphere is beyond a
+//! plane, and none of the rays meets it, where its centre is beyond the plane by more than its
+//! radius: where s < 0 and s² > r².
+//!
+//! In 32-bit floats, with u = 2⁻²⁴:
+//!
+//! - s is off by 4u|o| for its terms.
+//! - A plane is used only if F + x₀ R is at least half as long as its terms would be at a right
+//!   angle, F + x₀ R is at least 30° away from U, and n is at least 30° away from the plane across
+//!   R.
+//! - Then n is off by 17u, and the terms of every direction inside are at most 17 times as long as
+//!   the direction itself, so that rays leave the plane by 51u|o|.
+//! - Together that is 144u o·o of s².
+//! - A rung may find a hit that exact arithmetic misses by 24u (o·o + r²), as
+//!   [`slabs`](crate::accel::slabs) says.
+//!
+//! So 256u (o·o + r²) is added to r², and no rung's hit is lost.
 
 use glam::{Vec2, Vec3, Vec4};
 // On the CPU, std has `f32::sqrt`.
@@ -22,7 +35,7 @@ use crate::sphere::Sphere;
 /// 256u.
 const SLACK: f32 = 1.0 / (1 << 16) as f32;
 
-/// What bounds the rays through a rectangle of the film.
+/// Four planes around the rays through a rectangle of the film.
 #[derive(Clone, Copy, Debug)]
 pub struct Frustum {
     eye: Vec3,
@@ -32,12 +45,14 @@ pub struct Frustum {
     above: Plane,
 }
 
-/// A plane through the eye, by its inward normal of unit length; or, where rounding might decide which that is, none: zeros.
+/// A plane through the eye, as its inward normal of unit length. The normal is zero, and culls
+/// nothing, where rounding might decide which way it points.
 #[derive(Clone, Copy, Debug)]
 pub struct Plane(Vec3);
 
 impl Plane {
-    /// Of the four around the rays through the film from `low` to `high`: on the left, on the right, below, above.
+    /// One of the four planes around the rays through the film from `low` to `high`: `which` is 0
+    /// for left, 1 for right, 2 for below, 3 for above.
     #[inline]
     #[must_use]
     pub fn around(camera: &Camera, low: Vec2, high: Vec2, which: u32) -> Self {
@@ -58,21 +73,22 @@ impl Plane {
         )
     }
 
-    /// As one load.
+    /// The plane as one vector, for a single 16-byte store.
     #[inline]
     #[must_use]
     pub fn to_vec4(self) -> Vec4 {
         self.0.extend(0.0)
     }
 
-    /// Out of one load.
+    /// The plane from the vector that [`Plane::to_vec4`] gave.
     #[inline]
     #[must_use]
     pub fn from_vec4(vector: Vec4) -> Self {
         Self(vector.truncate())
     }
 
-    /// Along the ray forward + offset and an axis of the film, with what is towards a direction inside.
+    /// The plane along the ray `forward + offset` and an axis of the film; its inside is on the
+    /// side of `towards`.
     #[inline]
     fn of(forward: Vec3, offset: Vec3, axis: Vec3, towards: Vec3) -> Self {
         let ray = forward + offset;
@@ -95,7 +111,8 @@ impl Plane {
 }
 
 impl Frustum {
-    /// Around the rays through the film from `low` to `high`, as [`Camera::film`] counts it.
+    /// The frustum around the rays through the film from `low` to `high`, in coordinates of
+    /// [`Camera::film`].
     #[inline]
     #[must_use]
     pub fn around(camera: &Camera, low: Vec2, high: Vec2) -> Self {
@@ -103,7 +120,7 @@ impl Frustum {
         Self::within(camera.eye, [of(0), of(1), of(2), of(3)])
     }
 
-    /// Within the four planes around some rays from an eye.
+    /// The frustum within these four planes through an eye.
     #[inline]
     #[must_use]
     pub fn within(eye: Vec3, [left, right, below, above]: [Plane; 4]) -> Self {
@@ -116,7 +133,7 @@ impl Frustum {
         }
     }
 
-    /// Whether none of the rays meets the sphere on any rung, for certain.
+    /// Whether it is certain that none of the rays meets the sphere, on any rung.
     #[inline]
     #[must_use]
     pub fn misses(&self, sphere: Sphere) -> bool {
@@ -129,7 +146,7 @@ impl Frustum {
     }
 }
 
-/// The smaller of two; a NaN if that is the first.
+/// The smaller of two numbers; NaN if `a` is NaN.
 #[inline]
 fn least(a: f32, b: f32) -> f32 {
     if b < a { b } else { a }

@@ -1,15 +1,16 @@
-//! Single instructions of a GPU that Rust's own functions do not become: those compare and choose, mind
-//! what happens to zero, or are two. Runs on the GPU and on the CPU.
+//! Functions that are a single instruction on a GPU. Rust's own functions become more than one
+//! there: a comparison and a selection, or a special case for zero. Runs on the GPU and on the CPU.
 
 #[cfg(target_arch = "spirv")]
 use core::arch::asm;
 
-/// An instruction of `GLSL.std.450` that touches no memory, by its number; its operands and result are of one type.
+/// The instruction of `GLSL.std.450` with this number. It touches no memory, and its operands and
+/// result are of one type.
 #[cfg(target_arch = "spirv")]
 macro_rules! glsl {
     ($number:literal, $type:literal, $($operand:ident),+) => {{
         let result;
-        // SAFETY: it touches no memory.
+        // SAFETY: the instruction touches no memory.
         unsafe {
             asm!(
                 "%glsl = OpExtInstImport \"GLSL.std.450\"",
@@ -49,7 +50,7 @@ pub fn smaller(a: i32, b: i32) -> i32 {
     a.min(b)
 }
 
-/// Which is the highest bit that is set; at least one is.
+/// The number of the highest bit that is set. At least one bit must be set.
 #[inline]
 #[must_use]
 pub fn highest_bit(bits: u32) -> u32 {
@@ -64,7 +65,7 @@ pub fn highest_bit(bits: u32) -> u32 {
     }
 }
 
-/// Which is the lowest bit that is set; at least one is.
+/// The number of the lowest bit that is set. At least one bit must be set.
 #[inline]
 #[must_use]
 pub fn lowest_bit(bits: u32) -> u32 {
@@ -79,7 +80,7 @@ pub fn lowest_bit(bits: u32) -> u32 {
     }
 }
 
-/// One by the root of a number above zero, off by 2 units in the last place at most on a GPU.
+/// 1/√x for x above zero. On a GPU it is off by at most 2 units in the last place.
 #[inline]
 #[must_use]
 pub fn inverse_root(x: f32) -> f32 {

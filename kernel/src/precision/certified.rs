@@ -1,26 +1,32 @@
-//! Right answers everywhere, at nearly the everyday price. Runs on the GPU and on the CPU.
+//! Certified: right answers everywhere, with more digits only where 32-bit floats cannot decide.
+//! Runs on the GPU and on the CPU.
 //!
-//! Three stages, each asked only where the one before cannot decide, after J. R. Shewchuk's
-//! adaptive predicates (Discrete Comput. Geom. 18 (1997) 305).
+//! There are three stages. Each is evaluated only where the one before cannot decide, after J. R.
+//! Shewchuk's adaptive predicates (Discrete Comput. Geom. 18 (1997) 305).
 //!
-//! **1. A filter in f32.** With u = 2⁻²⁴, forwards through o = O − C, b/a and the foot
-//! f = o − (b/a)d: each component of f is off by at most 11u|o|, because |(b/a)d| ≤ |o|; so f·f is
-//! off by 22u|f||o| + 121u²o·o + 3u f·f ≤ 16u (f·f + o·o). Against r², off by u r², a line misses
-//! for certain where f·f − r² > 32u (f·f + o·o + r²). Where c is certainly positive, a ray with
-//! b > 0 that does not begin before its origin leaves and misses: were b truly negative, it would be by 8u|o||d| at most, and a hit needs
-//! b² ≥ ac. And where the ray enters, t is at least (|b| − √(a(r² − f·f + E)))/a, less 32u of its
-//! terms; beyond the end of the ray's interval the hit does not matter. Fused or not, division
-//! and root off by a few units: the factor 32 covers all of them twice over.
+//! **1. A filter in f32.** The errors, with u = 2⁻²⁴, from o = O − C through b/a to the foot
+//! f = o − (b/a)d:
 //!
-//! **2. Pairs of floats**, as [`super::compensated`] has them, where Δ, c and b are far enough
-//! from zero for their errors: with E₂ = 2⁻³⁸ (a r² + k·k + |k||o||d|) the sign of Δ is certain
-//! where |Δ| > E₂, and t is within 1 ulp where E₂ ≤ 2⁻²⁶ √Δ·|q|, |c| ≥ 2⁻¹⁹ (o·o + r²) and
-//! |q| ≥ 2⁻¹⁸ |o||d|.
+//! - Each component of f is off by at most 11u|o|, because |(b/a)d| ≤ |o|. So f·f is off by
+//!   22u|f||o| + 121u²o·o + 3u f·f ≤ 16u (f·f + o·o), and r² by u r².
+//! - A line misses for certain where f·f − r² > 32u (f·f + o·o + r²).
+//! - Where c is certainly positive, a ray with b > 0 and `t_min` ≥ 0 leaves and misses: if b were
+//!   truly negative, it would be so by 8u|o||d| at most, and a hit needs b² ≥ ac.
+//! - Where the ray enters, t is at least (|b| − √(a(r² − f·f + E)))/a, minus 32u of its terms, with
+//!   E = 32u (f·f + o·o + r²). Beyond the end of the ray's interval the hit does not matter.
 //!
-//! **3. Distillation**, of c alone where only c is too close to zero, else of all. Δ, b and c as sums of exact products, summed without loss
-//! ([`crate::arithmetic::distill`]): each is then right to about 40 bits, whatever cancels, and
-//! zero where it is zero, unless it is within 2⁻¹⁰⁰ of cancelling completely, which floats of one
-//! binade cannot. The rest adds numbers of one sign, so that t is within 1 ulp.
+//! Operations may be fused or not, and division and root off by a few units in the last place: the
+//! factor 32 covers all of these errors twice over.
+//!
+//! **2. Pairs of floats**, as in [`super::compensated`], where Δ, c and b are far enough from zero
+//! for their errors. Let E₂ = 2⁻³⁸ (a r² + k·k + |k||o||d|). The sign of Δ is certain where |Δ| >
+//! E₂. t is within 1 ulp where E₂ ≤ 2⁻²⁶ √Δ·|q|, |c| ≥ 2⁻¹⁹ (o·o + r²) and |q| ≥ 2⁻¹⁸ |o||d|.
+//!
+//! **3. Distillation**, of c alone if only c is too close to zero, otherwise of all. Δ, b and c are
+//! written as sums of exact products, and summed without loss ([`crate::arithmetic::distill`]).
+//! Each is then right to about 40 bits, whatever cancels, and zero where it is zero; the exception
+//! is a sum within 2⁻¹⁰⁰ of cancelling completely, which floats of one binade cannot reach. The
+//! remaining operations add numbers of one sign, so t is within 1 ulp.
 
 // On the CPU, std has `f32::sqrt`.
 #[cfg(target_arch = "spirv")]
@@ -37,14 +43,14 @@ use crate::hit::Hit;
 use crate::ray::Ray;
 use crate::sphere::Sphere;
 
-/// See the module.
+/// The rung of this module.
 #[derive(Clone, Copy, Debug)]
 pub struct Certified;
 
 /// 32u.
 const FILTER: f32 = 1.0 / (1 << 19) as f32;
 
-/// Which stage decided.
+/// The stage that decided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u32)]
 pub enum Stage {
@@ -65,7 +71,7 @@ impl Precision for Certified {
     }
 }
 
-/// The answer, and which stage gave it.
+/// The parameter of the hit or [`Hit::NONE_T`], and the stage that decided.
 #[inline]
 #[must_use]
 pub fn intersect_with_stage(sphere: Sphere, ray: &Ray) -> (f32, Stage) {
@@ -77,7 +83,8 @@ pub fn intersect_with_stage(sphere: Sphere, ray: &Ray) -> (f32, Stage) {
         return (Hit::NONE_T, Stage::Pairs);
     }
     if quadratic.size_is_certain() {
-        // All but c: an origin near the surface, or near that of a very large sphere.
+        // c may still be uncertain: for an origin near the surface, or near that of a very large
+        // sphere.
         let c_is_certain = quadratic.c_is_certain();
         let quadratic = if c_is_certain {
             quadratic
@@ -105,17 +112,18 @@ pub fn intersect_with_stage(sphere: Sphere, ray: &Ray) -> (f32, Stage) {
     }
 }
 
-/// What is added to the filter's sum of squares, so that a square that is no normal float decides nothing.
+/// What is added to the filter's sum of squares, so that a subnormal square decides nothing.
 const SMALLEST: f32 = 1e-30;
 
-/// Stage 1. False where it cannot tell, which includes every NaN, and a direction whose square is no normal float.
+/// Stage 1: whether the ray misses for certain. False for NaN, and for a direction whose square is
+/// not between [`SMALLEST`] and the largest float.
 #[inline]
 fn misses_for_certain(sphere: Sphere, ray: &Ray) -> bool {
     let o = ray.origin - sphere.center();
     let d = ray.direction;
     let a = d.dot(d);
     let b = o.dot(d);
-    // The same for every sphere that the ray is tested against.
+    // This is the same for every sphere that the ray is tested against.
     let inverse = 1.0 / a;
     let foot = o - d * (b * inverse);
     let (ff, oo) = (foot.dot(foot), o.dot(o));
@@ -137,12 +145,12 @@ fn misses_for_certain(sphere: Sphere, ray: &Ray) -> bool {
     false
 }
 
-/// Stage 3.
+/// Stage 3: the quadratic with every coefficient distilled.
 #[inline]
 fn distilled(pairs: &Quadratic) -> Quadratic {
     let (o, d, r) = (pairs.o, pairs.d, pairs.r);
 
-    // a = d·d and r² exactly; b = o·d.
+    // a = d·d and r², exactly; b = o·d.
     let mut a_terms = [0.0; 6];
     let mut b_terms = [0.0; 12];
     let mut axis = 0;
@@ -154,7 +162,7 @@ fn distilled(pairs: &Quadratic) -> Quadratic {
     }
     let rr = two_product(r, r);
 
-    // Δ = a r² − k·k, each component of k as eight terms.
+    // Δ = a r² − k·k, with each component of k as eight terms.
     let mut terms = [0.0; 240];
     let mut at = 0;
     let mut index = 0;
@@ -199,7 +207,7 @@ fn distilled(pairs: &Quadratic) -> Quadratic {
     }
 }
 
-/// c = o·o − r², distilled.
+/// Distils c = o·o − r².
 #[inline]
 fn distilled_c(pairs: &Quadratic) -> DoubleSingle {
     let mut terms = [0.0; 20];
@@ -217,7 +225,7 @@ fn distilled_c(pairs: &Quadratic) -> DoubleSingle {
     distill(&mut terms)
 }
 
-/// Puts the product, exactly, into two places from `at` on.
+/// Stores the exact product in the two elements from `at` on.
 #[inline]
 fn put_product<const N: usize>(terms: &mut [f32; N], at: usize, a: f32, b: f32) {
     let DoubleSingle { high, low } = DoubleSingle::product(a, b);

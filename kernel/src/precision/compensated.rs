@@ -1,20 +1,20 @@
-//! Everything as sums of two floats, about 48 bits. Runs on the GPU and on the CPU.
+//! Compensated: everything in pairs of floats, about 48 bits. Runs on the GPU and on the CPU.
 //!
 //! o = O − C is exact as a pair. The components of k = o × d are differences of products whose
-//! errors are kept (W. Kahan's way with `ad − bc`; C.-P. Jeannerod, N. Louvet and J.-M. Muller,
-//! Further analysis of Kahan's algorithm, Math. Comp. 82 (2013), bound it for one float, here the
-//! pairs carry the errors on), so that k is off by a few u² of |o||d|. Then
+//! errors are kept. This is W. Kahan's algorithm for `ad − bc`, which C.-P. Jeannerod, N. Louvet
+//! and J.-M. Muller, Further analysis of Kahan's algorithm, Math. Comp. 82 (2013), bound for one
+//! float; here the pairs carry the errors on. So k is off by a few u² of |o||d|. Then:
 //!
-//! - Δ = a r² − k·k is off by a few u² (a r² + |k||o||d|): it decides hit or miss outside of a band
-//!   of about 2⁻⁴² (1 + |o|/r) on |Δ| / a r²;
-//! - c = o·o − r² is off by about 11u² (o·o + r²), less than a quarter of an ulp where
-//!   |c| ≥ 2⁻¹⁹ (o·o + r²); with the rest and the one rounding at the end, t is within 1 ulp there,
-//!   and was never seen further off where |c| ≥ 2⁻²⁰ o·o;
-//! - q adds numbers of one sign, and each root is rounded to a float once, at the end.
+//! - Δ = a r² − k·k is off by a few u² (a r² + |k||o||d|). It decides hit or miss outside of a band
+//!   of about 2⁻⁴² (1 + |o|/r) on |Δ| / a r².
+//! - c = o·o − r² is off by about 11u² (o·o + r²), which is less than a quarter of an ulp where
+//!   |c| ≥ 2⁻¹⁹ (o·o + r²). With the other errors and the one rounding at the end, t is within 1
+//!   ulp there, and was never seen further off where |c| ≥ 2⁻²⁰ o·o.
+//! - q adds numbers of one sign. Each root is rounded to a float once, at the end.
 //!
-//! Lengths are scaled by a power of two before, and so are directions, so that the largest of each
-//! is between 1 and 2 and no product overflows. A product's error is normal where the product is
-//! above 2⁻⁷⁹: r may be down to 2⁻³⁹ of |o|.
+//! Lengths and directions are first scaled by powers of two so that the largest of each is between
+//! 1 and 2 and no product overflows. A product's error is normal where the product is above 2⁻⁷⁹,
+//! so r may be as small as 2⁻³⁹ of |o|.
 
 // On the CPU, std has `f32::sqrt`.
 #[cfg(target_arch = "spirv")]
@@ -27,7 +27,7 @@ use crate::hit::Hit;
 use crate::ray::Ray;
 use crate::sphere::Sphere;
 
-/// See the module.
+/// The rung of this module.
 #[derive(Clone, Copy, Debug)]
 pub struct Compensated;
 
@@ -35,7 +35,7 @@ impl Precision for Compensated {
     #[inline]
     fn intersect(sphere: Sphere, ray: &Ray) -> f32 {
         let quadratic = Quadratic::of(sphere, ray);
-        // False for a NaN in either.
+        // False if either is NaN.
         let meets = (quadratic.discriminant.high >= 0.0) & (quadratic.a.high > 0.0);
         if meets {
             let (near, far) = quadratic.roots();
@@ -46,14 +46,14 @@ impl Precision for Compensated {
     }
 }
 
-/// The quadratic of a ray and a sphere, in pairs of floats, of scaled lengths and directions.
+/// The quadratic of a ray and a sphere in pairs of floats, for scaled lengths and directions.
 #[derive(Clone, Copy, Debug)]
 pub struct Quadratic {
-    /// o = O − C, exactly.
+    /// o = O − C, exactly, scaled.
     pub o: [DoubleSingle; 3],
-    /// The direction.
+    /// The direction, scaled.
     pub d: [f32; 3],
-    /// The radius.
+    /// The radius, scaled.
     pub r: f32,
     /// d·d
     pub a: DoubleSingle,
@@ -63,11 +63,11 @@ pub struct Quadratic {
     pub c: DoubleSingle,
     /// a r² − k·k
     pub discriminant: DoubleSingle,
-    /// k·k, roughly.
+    /// k·k, rounded to a float.
     pub k_squared: f32,
-    /// What lengths were multiplied by, a power of two.
+    /// The power of two that lengths were multiplied by.
     pub length_scale: f32,
-    /// What the direction was multiplied by, a power of two.
+    /// The power of two that the direction was multiplied by.
     pub direction_scale: f32,
 }
 
@@ -137,7 +137,8 @@ impl Quadratic {
         }
     }
 
-    /// Both roots, the smaller first, of a quadratic whose discriminant is not negative.
+    /// Both roots as parameters along the ray, the smaller first. The discriminant must not be
+    /// negative.
     #[inline]
     #[must_use]
     pub fn roots(&self) -> (f32, f32) {
@@ -162,9 +163,10 @@ impl Quadratic {
         }
     }
 
-    /// From a parameter of the scaled quadratic to one along the ray, exactly: both scales are
-    /// powers of two, and the reciprocal of one is made from its exponent, because a device's
-    /// quotients are not exact. The larger comes first, lest digits be lost below the normal floats on the way.
+    /// Converts a root of the scaled quadratic to a parameter along the ray, exactly. Both scales
+    /// are powers of two, and the reciprocal of one is made from its exponent, because a device's
+    /// quotients are not exact. The larger factor comes first, so that no digits are lost in a
+    /// subnormal intermediate result.
     #[inline]
     fn unscale(&self, t: f32) -> f32 {
         let exponent = self.length_scale.to_bits() >> 23;
@@ -174,7 +176,7 @@ impl Quadratic {
         mul(mul(t, larger), smaller)
     }
 
-    /// |o|²|d|², roughly.
+    /// |o|²|d|², approximately.
     #[inline]
     fn size_squared(&self) -> f32 {
         let oo = self.o[0].high * self.o[0].high
@@ -190,14 +192,14 @@ impl Quadratic {
         two_to_minus(38) * (self.a.high * (self.r * self.r) + self.k_squared + mixed)
     }
 
-    /// Whether the sign of Δ is certainly negative.
+    /// Whether Δ is certainly negative.
     #[inline]
     #[must_use]
     pub fn misses_for_certain(&self) -> bool {
         -self.discriminant.high > self.discriminant_error()
     }
 
-    /// Whether the sign of Δ is certainly positive, and |q| right to what 1 ulp of t needs.
+    /// Whether Δ is certainly positive, and |q| is accurate enough for t to be within 1 ulp.
     #[inline]
     #[must_use]
     pub fn size_is_certain(&self) -> bool {
@@ -209,7 +211,7 @@ impl Quadratic {
             & (size * size >= self.size_squared() * two_to_minus(36))
     }
 
-    /// Whether c is right to what 1 ulp of t needs.
+    /// Whether c is accurate enough for t to be within 1 ulp.
     #[inline]
     #[must_use]
     pub fn c_is_certain(&self) -> bool {
@@ -235,8 +237,8 @@ fn scale(value: DoubleSingle, factor: f32) -> DoubleSingle {
     }
 }
 
-/// The power of two that brings a positive number between 1 and 2, or near it where that power
-/// would not be a normal float; 1 for zero, infinities and NaN.
+/// The power of two that scales a positive number to between 1 and 2, or as near as possible if
+/// that power would not be a normal float; 1 for zero, subnormal numbers, infinities and NaN.
 #[inline]
 fn inverse_power_of_two(value: f32) -> f32 {
     let exponent = (value.to_bits() >> 23) & 0xff;

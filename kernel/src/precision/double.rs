@@ -1,9 +1,9 @@
-//! The cross product's discriminant and the roots without cancellation, in f64. Runs on the CPU,
-//! and on GPUs whose module declares 64-bit floats.
+//! Double: the discriminant from the cross product and the roots without cancellation, in f64. Runs
+//! on the CPU, and on GPUs whose module declares 64-bit floats.
 //!
-//! With v = 2⁻⁵³: o is off by v·|o| at most, k by a few v·|o||d|, Δ = a r² − k·k by a few
-//! v (a r² + |k||o||d|), and c by a few v (o·o + r²). Each root is rounded to a float at the end.
-//! Vulkan promises little of 64-bit quotients and roots, so that one Newton step follows each.
+//! With v = 2⁻⁵³: o is off by v·|o| at most, k by a few v·|o||d|, Δ = a r² − k·k by a few v (a r² +
+//! |k||o||d|), and c by a few v (o·o + r²). Each root is rounded to a float at the end. Vulkan
+//! promises little about 64-bit quotients and roots, so one Newton step follows each.
 
 use super::root::Precision;
 #[cfg(any(not(target_arch = "spirv"), feature = "f64"))]
@@ -13,16 +13,16 @@ use crate::lane::{Lane, Lane3};
 use crate::ray::Ray;
 use crate::sphere::Sphere;
 
-/// See the module.
+/// The rung of this module.
 #[derive(Clone, Copy, Debug)]
 pub struct Double;
 
-/// The quadratic of a line and a sphere, in lanes of 64 bits.
+/// The quadratic of a line and a sphere, in lanes of 64-bit floats.
 #[derive(Clone, Copy, Debug)]
 pub struct Quadratic<L> {
     /// d·d
     pub a: L,
-    /// o·d, o from the sphere's centre to the origin.
+    /// o·d, with o from the sphere's centre to the origin.
     pub b: L,
     /// o·o − r²
     pub c: L,
@@ -31,7 +31,8 @@ pub struct Quadratic<L> {
 }
 
 impl<L: Lane> Quadratic<L> {
-    /// Of o from the sphere's centre to the line's origin, the radius, and the line's direction.
+    /// The quadratic for o from the sphere's centre to the line's origin, the radius, and the
+    /// line's direction.
     #[inline(always)]
     #[must_use]
     pub fn of(o: Lane3<L>, radius: L, d: Lane3<L>) -> Self {
@@ -46,7 +47,7 @@ impl<L: Lane> Quadratic<L> {
         }
     }
 
-    /// Whether the line meets the sphere; false for a NaN.
+    /// Whether the line meets the sphere; false for NaN.
     #[inline(always)]
     #[must_use]
     pub fn meets(&self) -> L::Mask {
@@ -91,7 +92,7 @@ impl Precision for Double {
         choose_root(near as f32, far as f32, ray)
     }
 
-    /// The module has no 64-bit floats.
+    /// Always a miss: this module has no 64-bit floats.
     #[cfg(all(target_arch = "spirv", not(feature = "f64")))]
     #[inline]
     fn intersect(_: Sphere, _: &Ray) -> f32 {

@@ -1,15 +1,15 @@
-//! The ladder: ways to intersect a ray with a sphere, each with a stated bound and a price. Runs
-//! on the GPU and on the CPU.
+//! The ladder of rungs: ways to intersect a ray with a sphere, each with a stated error bound and a
+//! cost. Runs on the GPU and on the CPU.
 //!
-//! Notation of all of them: o = O − C, a = d·d, b = o·d, c = o·o − r², k = o × d,
+//! All of them use this notation: o = O − C, a = d·d, b = o·d, c = o·o − r², k = o × d,
 //! Δ = b² − ac = a r² − k·k, q = −b − sign(b)·√Δ, u = 2⁻²⁴. The line meets the sphere where Δ ≥ 0,
 //! at t = q/a and t = c/q.
 //!
 //! | rung | arithmetic | what it is for |
 //! | --- | --- | --- |
-//! | [`textbook`] | f32, the formula of any textbook | the baseline |
-//! | [`robust`] | f32, Δ by the perpendicular, roots without cancellation | every day |
-//! | [`compensated`] | pairs of f32, about 48 bits | the digits of f64 on any device |
+//! | [`textbook`] | f32, the quadratic formula as textbooks print it | the baseline |
+//! | [`robust`] | f32, Δ from the perpendicular, roots without cancellation | every day |
+//! | [`compensated`] | pairs of f32, about 48 bits | about the digits of f64, on any device |
 //! | [`double`] | f64 | devices that have f64 |
 //! | [`certified`] | f32 with a bound on its error, more digits only where it cannot decide | right answers everywhere |
 
@@ -33,10 +33,10 @@ pub use robust::Robust;
 pub use root::Precision;
 pub use textbook::Textbook;
 
-/// What arithmetic a rung needs a device to keep. A device on which it is not kept refuses the rung.
+/// The arithmetic that a rung needs of a device. A device that does not keep it refuses the rung.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Needs {
-    /// None: sums, products, quotients and roots as they come.
+    /// Nothing beyond ordinary sums, products, quotients and roots.
     Nothing,
     /// Exact error terms of sums and products of 32-bit floats.
     ErrorTerms,
@@ -44,10 +44,10 @@ pub enum Needs {
     DoubleFloats,
 }
 
-/// Makes the enum, and what decides by it, of the list below.
+/// Generates the enum, and every function that depends on the rung, from the list below.
 macro_rules! rungs {
     ($($(#[$doc:meta])* $order:ident $name:ident = $value:literal, $text:literal, $summary:literal, $needs:ident;)*) => {
-        /// The rungs by name, as hosts and specialisation constants say them.
+        /// The rungs by name, for hosts and specialisation constants.
         #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
         #[repr(u32)]
         pub enum Rung {
@@ -70,13 +70,13 @@ macro_rules! rungs {
                 match self { $(Self::$name => $summary,)* }
             }
 
-            /// What it needs of a device.
+            /// The arithmetic that the rung needs of a device.
             #[must_use]
             pub const fn needs(self) -> Needs {
                 match self { $(Self::$name => Needs::$needs,)* }
             }
 
-            /// Runs `of` compiled for this rung alone.
+            /// Runs `of`, compiled for this rung alone.
             #[cfg(not(target_arch = "spirv"))]
             pub fn with<F: OnRung>(self, of: F) -> F::Output {
                 match self { $(Self::$name => of.run::<$value>(),)* }
@@ -84,9 +84,10 @@ macro_rules! rungs {
         }
 
         /// [`Precision::intersect`] of the rung with this value of [`Rung::to_u32`]. The rung is a
-        /// constant wherever this is called, so that only one of the branches is compiled. A value that is none hits nothing.
+        /// constant wherever this is called, so only one of the branches is compiled. A value that
+        /// stands for no rung hits nothing.
         ///
-        /// In a module without 64-bit floats, [`Rung::Double`] hits nothing; hosts give it the module
+        /// In a module without 64-bit floats, [`Rung::Double`] hits nothing; hosts use the module
         /// that has them.
         #[inline]
         #[must_use]
@@ -94,21 +95,23 @@ macro_rules! rungs {
             $(if rung == $value { $name::intersect(sphere, ray) } else)* { Hit::NONE_T }
         }
 
-        /// [`Precision::widening`] of this rung.
+        /// [`Precision::widening`] of the rung with this value, in scene units.
         #[inline]
         #[must_use]
         pub fn widening(rung: u32, far: Vec3, smallest_radius: f32) -> f32 {
             $(if rung == $value { $name::widening(far, smallest_radius) } else)* { 0.0 }
         }
 
-        /// Whether the rung takes so long that walks ask it only about the nearest sphere, when it is found.
+        /// Whether the rung is so slow that walks evaluate it only for the nearest sphere, when
+        /// that is found.
         #[inline]
         #[must_use]
         pub const fn is_lazy(rung: u32) -> bool {
             !at_once!(is rung; $($order $value,)*)
         }
 
-        /// [`intersect`] of the rungs that are not [lazy](is_lazy); the code of the others is left out.
+        /// [`intersect`] for rungs that are not [lazy](is_lazy); the code of the lazy ones is left
+        /// out.
         #[inline]
         #[must_use]
         pub fn intersect_at_once(rung: u32, sphere: Sphere, ray: &Ray) -> f32 {
@@ -117,7 +120,7 @@ macro_rules! rungs {
     };
 }
 
-/// Of the list's rungs those that are asked at once.
+/// Picks from the list the rungs that are evaluated at once.
 macro_rules! at_once {
     (is $rung:ident;) => { false };
     (is $rung:ident; lazily $value:literal, $($rest:tt)*) => { at_once!(is $rung; $($rest)*) };
@@ -137,8 +140,9 @@ macro_rules! at_once {
     };
 }
 
-// Each rung: whether walks ask it at once about every sphere that may be hit, or lazily about the nearest; its number and name; how it
-// computes; and what it needs of a device. They are in the order of their digits.
+// Each rung says whether walks evaluate it at once for every sphere that may be hit, or lazily for
+// the nearest; its number and name; how it computes; and what it needs of a device. Rungs are
+// ordered by the digits that they keep.
 rungs! {
     /// [`Textbook`].
     at_once Textbook = 0, "textbook", "The quadratic formula in 32-bit floats", Nothing;
@@ -154,36 +158,36 @@ rungs! {
 }
 
 impl Rung {
-    /// The specialisation constant that holds the rung.
+    /// The number of the specialisation constant that holds the rung.
     pub const SPEC_ID: u32 = 1;
 
-    /// The rung as the kernel's constant.
+    /// The rung as the value of the specialisation constant.
     #[must_use]
     pub const fn to_u32(self) -> u32 {
         self as u32
     }
 
-    /// Whether hits of the rung are where [`bounds`](crate::cull::bounds) have them: from robust on.
+    /// Whether [`bounds`](crate::cull::bounds) hold for the rung: from robust up.
     #[must_use]
     pub const fn is_bounded(self) -> bool {
         self.to_u32() >= Self::Robust.to_u32()
     }
 }
 
-/// Something that is compiled for each rung: see [`Rung::with`].
+/// A computation that is compiled for each rung; see [`Rung::with`].
 #[cfg(not(target_arch = "spirv"))]
 pub trait OnRung {
-    /// What comes of it.
+    /// The result of the computation.
     type Output;
 
-    /// Runs it on the rung with this value of [`Rung::to_u32`].
+    /// Runs the computation on the rung with this value of [`Rung::to_u32`].
     fn run<const RUNG: u32>(self) -> Self::Output;
 }
 
 impl Sphere {
     /// Where `ray` enters the sphere, or leaves it if it starts inside: the smaller root in the
-    /// ray's interval, as a parameter along the ray. [`Hit::NONE_T`](crate::Hit::NONE_T) if
-    /// there is none. This is the everyday rung of the ladder in [`crate::precision`].
+    /// ray's interval, as a parameter along the ray. [`Hit::NONE_T`](crate::Hit::NONE_T) if there
+    /// is none. This is [`Rung::Robust`], the default rung.
     #[inline]
     #[must_use]
     pub fn intersect(&self, ray: &Ray) -> f32 {

@@ -1,15 +1,16 @@
-//! The discriminant from the perpendicular, the roots without cancellation, in f32. Runs on the
-//! GPU and on the CPU.
+//! Robust: the discriminant from the perpendicular and the roots without cancellation, in f32. Runs
+//! on the GPU and on the CPU.
 //!
-//! E. Haines, J. Günther and T. Akenine-Möller, Precision improvements for ray/sphere
-//! intersection, in Ray Tracing Gems (2019), ch. 7. The foot of the perpendicular from the centre
-//! to the line is f = o − (b/a) d, and Δ/a = r² − f·f. Both terms are of the size of r² where it
-//! matters, so that a small sphere far away keeps its digits: the error of f is a few u·|o|, that
-//! of Δ/a a few u·(r·|o| + r²) + (u·|o|)², where b² − ac has a few u·|o|². The roots are q/a and c/q, which
-//! add numbers of one sign only.
+//! E. Haines, J. Günther and T. Akenine-Möller, Precision improvements for ray/sphere intersection,
+//! in Ray Tracing Gems (2019), ch. 7. The foot of the perpendicular from the centre to the line is
+//! f = o − (b/a) d, and Δ/a = r² − f·f. Both terms are of the size of r² where it matters, so that
+//! a small sphere far away keeps its digits. The error of f is a few u·|o|, and that of Δ/a is a
+//! few u·(r·|o| + r²) + (u·|o|)², while that of b² − ac is a few u·|o|². The roots are q/a and c/q,
+//! where q adds numbers of one sign only.
 //!
-//! What is left is c itself: o·o − r² loses its digits where the origin is near the surface, and
-//! o = O − C is rounded. A huge ground sphere and a ray that starts on a surface need more.
+//! Two errors remain: c = o·o − r² loses its digits where the origin is near the surface, and
+//! o = O − C is rounded. A huge ground sphere, or a ray that starts on a surface, needs a higher
+//! rung.
 
 use glam::Vec3;
 
@@ -20,16 +21,16 @@ use crate::lane::{Lane, Lane3};
 use crate::ray::Ray;
 use crate::sphere::Sphere;
 
-/// See the module.
+/// The rung of this module.
 #[derive(Clone, Copy, Debug)]
 pub struct Robust;
 
-/// The quadratic of a line and a sphere, and the size of its larger root.
+/// The quadratic of a line and a sphere, in lanes.
 #[derive(Clone, Copy, Debug)]
 pub struct Quadratic<L> {
     /// d·d
     pub a: L,
-    /// o·d, o from the sphere's centre to the origin.
+    /// o·d, with o from the sphere's centre to the origin.
     pub b: L,
     /// o·o − r²
     pub c: L,
@@ -40,7 +41,8 @@ pub struct Quadratic<L> {
 }
 
 impl<L: Lane> Quadratic<L> {
-    /// Of o from the sphere's centre to the line's origin, the radius, the line's direction, its square and one over that.
+    /// The quadratic for o from the sphere's centre to the line's origin, the radius, the line's
+    /// direction d, `a` = d·d and `inverse` = 1/a.
     #[inline(always)]
     #[must_use]
     pub fn of(o: Lane3<L>, radius: L, d: Lane3<L>, a: L, inverse: L) -> Self {
@@ -64,7 +66,7 @@ impl<L: Lane> Quadratic<L> {
     #[inline(always)]
     #[must_use]
     pub fn meets(&self) -> L::Mask {
-        // Infinite only far outside of the domain: |d| above 2⁶⁰ or so.
+        // The size is infinite only far outside the domain: for |d| above 2⁶⁰ or so.
         self.discriminant.simd_ge(self.b.splat(0.0)) & self.size.simd_le(self.b.splat(f32::MAX))
     }
 
@@ -75,14 +77,14 @@ impl<L: Lane> Quadratic<L> {
         self.b.simd_lt(self.b.splat(0.0))
     }
 
-    /// The size of the root that is larger by its size.
+    /// The absolute value of the root whose absolute value is larger: |q|/a.
     #[inline(always)]
     #[must_use]
     pub fn outer(&self) -> L {
         self.size / self.a
     }
 
-    /// The other root, if the centre is ahead, else less that: NaN where both roots are zero.
+    /// The other root if the centre is ahead, otherwise its negative; NaN if both roots are zero.
     #[inline(always)]
     #[must_use]
     pub fn inner(&self) -> L {
@@ -105,12 +107,12 @@ impl Precision for Robust {
         let o = ray.origin - sphere.center();
         let d = ray.direction;
         let a = d.dot(d);
-        // The same for every sphere that the ray is tested against.
+        // This is the same for every sphere that the ray is tested against.
         let inverse = 1.0 / a;
         let quadratic = Quadratic::of(Lane3::of(o), sphere.radius(), Lane3::of(d), a, inverse);
         let (near, far) = quadratic.roots();
         let t = choose_root(near, far, ray);
-        // No branches: the threads of a GPU would wait for each other.
+        // No early return: the threads of a GPU would wait for each other.
         if quadratic.meets() { t } else { Hit::NONE_T }
     }
 

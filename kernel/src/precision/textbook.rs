@@ -1,13 +1,13 @@
-//! The quadratic formula as a textbook prints it, in f32. Runs on the GPU and on the CPU.
+//! Textbook: the quadratic formula as textbooks print it, in f32. Runs on the GPU and on the CPU.
 //!
 //! A point of the sphere satisfies |P − C|² = r². With P = O + t·D this is a quadratic in t,
 //!
 //! > a t² + b t + c = 0,  a = D·D,  b = 2 (O − C)·D,  c = |O − C|² − r²,
 //!
-//! whose roots are (−b ± √(b² − 4ac)) / 2a. It is the fastest form to write down and the first
-//! to lose digits: c cancels when the ray starts near the surface of a large sphere, the
-//! discriminant cancels when the sphere is small and far, and −b cancels against the root when
-//! b² is much larger than 4ac.
+//! whose roots are (−b ± √(b² − 4ac)) / 2a. It is the quickest form to write down and the first to
+//! lose digits: c cancels when the ray starts near the surface of a large sphere, the discriminant
+//! cancels when the sphere is small and far, and −b cancels against the root when b² is much larger
+//! than 4ac.
 
 use glam::Vec3;
 // On the CPU, std has `f32::sqrt`.
@@ -20,7 +20,7 @@ use crate::hit::Hit;
 use crate::ray::Ray;
 use crate::sphere::Sphere;
 
-/// See the module.
+/// The rung of this module.
 #[derive(Clone, Copy, Debug)]
 pub struct Textbook;
 

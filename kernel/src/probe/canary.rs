@@ -1,5 +1,5 @@
-//! The canary: what a device's compiler and arithmetic do to the operations that the upper rungs
-//! live on. Runs on the GPU and on the CPU; the host judges what comes out.
+//! The canary: whether a device's compiler and arithmetic keep the operations that the upper rungs
+//! depend on. Runs on the GPU and on the CPU; the host judges the results.
 
 use bytemuck::{Pod, Zeroable};
 // On the CPU, std has the square roots.
@@ -8,39 +8,40 @@ use spirv_std::num_traits::Float as _;
 
 use crate::arithmetic::error_free::{split, two_diff, two_product, two_sum};
 
-/// Two numbers to compute with.
+/// Two numbers for the canary to compute with.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Operands {
-    /// The first.
+    /// The first operand.
     pub a: f32,
-    /// The second.
+    /// The second operand.
     pub b: f32,
 }
 
-/// What a device makes of two numbers.
+/// What a device computes from two numbers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Outcome {
-    /// a + b, rounded, and its error.
+    /// a + b, rounded, and its rounding error.
     pub sum: [f32; 2],
-    /// a − b, rounded, and its error.
+    /// a − b, rounded, and its rounding error.
     pub difference: [f32; 2],
-    /// a · b, rounded, and its error.
+    /// a · b, rounded, and its rounding error.
     pub product: [f32; 2],
-    /// a in two halves.
+    /// The two halves of a, by [`split`].
     pub halves: [f32; 2],
     /// a / b.
     pub quotient: f32,
     /// √|a|.
     pub root: f32,
-    /// 1 if a compares equal to itself: 0 for a NaN on a device that keeps to IEEE 754.
+    /// 1 if a compares equal to itself. For NaN, 0 on a device that follows IEEE 754.
     pub equals_itself: u32,
-    /// The bits of 2⁻¹⁰⁰ · a, subnormal where a is small; zero where the device flushes.
+    /// The bits of 2⁻¹⁰⁰ · a, which is subnormal if a is small; zero if the device flushes
+    /// subnormal numbers.
     pub small_product: u32,
 }
 
-/// Computes everything that the canary looks at.
+/// Computes everything that the host judges.
 #[inline]
 #[must_use]
 pub fn sing(operands: Operands) -> Outcome {
@@ -60,11 +61,11 @@ pub fn sing(operands: Operands) -> Outcome {
     }
 }
 
-/// What a device's 64-bit floats make of two numbers.
+/// What a device computes from two numbers in 64-bit floats.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct WideOutcome {
-    /// 2³⁰ · a + b, where single floats would lose b.
+    /// 2³⁰ · a + b, where 32-bit floats would lose b.
     pub sum: f64,
     /// a · b, which 64 bits hold exactly.
     pub product: f64,
@@ -74,7 +75,7 @@ pub struct WideOutcome {
     pub root: f64,
 }
 
-/// Computes everything that the canary looks at in 64-bit floats.
+/// Computes everything that the host judges in 64-bit floats.
 #[cfg(any(not(target_arch = "spirv"), feature = "f64"))]
 #[inline]
 #[must_use]

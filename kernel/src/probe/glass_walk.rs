@@ -1,5 +1,5 @@
-//! A light path inside a glass sphere, bounce after bounce, to see whether it stays there. Runs on
-//! the GPU and on the CPU; the host judges what comes out.
+//! A light path inside a glass sphere, bounce after bounce, to see whether it stays inside. Runs on
+//! the GPU and on the CPU; the host judges the result.
 
 use bytemuck::{Pod, Zeroable};
 
@@ -10,22 +10,23 @@ use crate::ray::Ray;
 use crate::sphere::Sphere;
 use crate::surface::{Surface, unit};
 
-/// How a path inside a sphere went.
+/// The result of a path inside a sphere.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Walk {
     /// How many times the path met the sphere from inside.
     pub bounces: u32,
-    /// How many times it met the sphere from the wrong side, or not at all.
+    /// How many times the path met the sphere from the wrong side, or not at all.
     pub astray: u32,
-    /// 1 if the path, let out at its end, did not meet the sphere again.
+    /// 1 if the path, refracted out of the sphere at its end, did not meet the sphere again.
     pub is_out: u32,
-    /// The cosine between path and normal at the last bounce; at every bounce it is the same.
+    /// The cosine between path and normal at the last bounce. In exact arithmetic it is the same at
+    /// every bounce.
     pub cosine: f32,
 }
 
-/// Lets `ray` into `sphere`, of refractive index `index`, reflects it there `bounces` times, and
-/// lets it out. Zero bounces for a ray that misses.
+/// Refracts `ray` into `sphere`, whose refractive index is `index`, reflects it inside `bounces`
+/// times, and refracts it out. A ray that misses has zero bounces.
 #[inline]
 #[must_use]
 pub fn walk_inside(rung: u32, ray: &Ray, sphere: Sphere, index: f32, bounces: u32) -> Walk {

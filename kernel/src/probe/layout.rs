@@ -12,15 +12,15 @@ use core::mem::offset_of;
 
 macro_rules! layouts {
     ($($name:literal = $value:expr;)*) => {
-        /// What each entry of the table measures, in order: a type's size, or a field's offset.
+        /// What each entry of the table is, in order: a type's size, or a field's offset.
         #[cfg(not(target_arch = "spirv"))]
         pub const NAMES: &[&str] = &[$($name),*];
 
-        /// How many entries there are.
+        /// The number of entries.
         pub const COUNT: usize = [$($value),*].len();
 
-        /// Writes the table, in bytes, as the compiler of this very code sees it. A slice that
-        /// is too short is filled as far as it goes.
+        /// Writes the table, in bytes, as the compiler of this code sees it. A slice that is too
+        /// short is filled as far as it goes.
         #[inline]
         pub fn write(table: &mut [u32]) {
             let mut index = 0;

@@ -1,11 +1,11 @@
-//! What measures a device and a compiler. Runs on the GPU and on the CPU.
+//! Probes: what measures a device and a compiler. Runs on the GPU and on the CPU.
 //!
 //! | module | measures |
 //! | --- | --- |
 //! | [`canary`] | what a device keeps of the arithmetic that the ladder needs |
 //! | [`throughput`] | how many operations a second a machine does at most, for `spherule bench` |
 //! | [`layout`] | sizes and offsets of the shared types |
-//! | [`glass_walk`] | what is left of a light path after a thousand reflections inside a sphere, for the hard cases |
+//! | [`glass_walk`] | whether a light path stays inside a sphere for a thousand reflections, for the hard cases |
 
 pub mod canary;
 pub mod glass_walk;

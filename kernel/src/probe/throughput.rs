@@ -1,12 +1,12 @@
-//! What a machine does at most: multiplications in registers, and numbers through memory. Runs on the GPU; on the CPU
-//! vectors are as wide as the machine's, which is the host's business.
+//! The most multiplications in registers that a device does a second. Runs on the GPU; the host has
+//! its own version for the CPU, with vectors as wide as the machine's.
 
 use glam::Vec4;
 
-/// Multiplications in one round of [`products`].
+/// The number of multiplications in one round of [`products`].
 pub const MULTIPLICATIONS: u32 = 128;
 
-/// Sixteen products of which none waits for another, of `rounds` times eight factors each.
+/// The sum of sixteen products of `rounds` times eight factors each. No product waits for another.
 #[inline]
 #[must_use]
 pub fn products(first: f32, factor: f32, rounds: u32) -> f32 {

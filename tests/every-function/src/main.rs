@@ -1,11 +1,13 @@
-//! Calls every public function of spherule and of its kernel with random and extreme arguments, and says which panics, crashes or
-//! takes a second longer than what was asked for.
+//! Calls every public function of spherule and of its kernel with random and extreme arguments, and
+//! reports calls that panic, crash or take longer than they should: a second, unless the call is
+//! for more.
 //!
 //!     every-function [--seed N] [--seconds N] [--calls N] [--only PART] [--skip PART]… [--replay FUNCTION NUMBER]
 //!
-//! Functions share the time evenly, so that those of nanoseconds are called millions of times. It ends when both the time is over
-//! and the calls are made. Each call has its number, and its arguments come of that and of the seed: `--replay` makes one again and
-//! writes them out. Ends with 1 if there is a finding.
+//! Functions share the time evenly, so fast ones are called millions of times. The program ends
+//! when both the time is over and the calls are made. Each call has a number, and its arguments
+//! depend only on that and on the seed: `--replay` repeats a call and prints the arguments. The
+//! exit code is 1 if there is a finding.
 
 mod calls;
 mod odd;
@@ -24,17 +26,17 @@ use std::time::{Duration, Instant};
 
 use odd::Source;
 
-/// A public function, called.
+/// How a public function is called.
 pub struct Call {
-    /// What it is.
+    /// The function's path.
     name: &'static str,
-    /// Whether it needs a GPU, real or in software.
+    /// Whether the call needs a GPU, real or in software.
     needs_gpu: bool,
-    /// At most so many calls.
+    /// The largest number of calls.
     most: u64,
-    /// What one may take, for it asks for that much.
+    /// How many seconds one call may take.
     seconds: u64,
-    /// Calls it.
+    /// Makes arguments and calls the function.
     call: fn(&mut Source),
 }
 
@@ -65,16 +67,16 @@ impl Call {
     }
 }
 
-/// Takes what a function returns.
+/// Consumes what a function returns.
 fn seen<T>(value: T) {
     black_box(value);
 }
 
-/// How long calls of one function go on.
+/// How long a thread calls one function.
 const BATCH: Duration = Duration::from_millis(1);
-/// And how many they are at most: so many are made again after a crash.
+/// How many times a thread calls one function at most. After a crash, so many calls are repeated.
 const LARGEST_BATCH: u64 = 500;
-/// When the process gives up on a call. A machine may be busy.
+/// A call that takes this much longer than it may hangs; the machine may be busy.
 const HANGS: Duration = Duration::from_secs(60);
 
 struct Options {
@@ -102,10 +104,10 @@ impl Options {
         };
         let mut words = std::env::args().skip(1);
         while let Some(word) = words.next() {
-            let mut next = || words.next().ok_or(format!("{word} wants a value"));
+            let mut next = || words.next().ok_or(format!("{word} needs a value"));
             let number = |text: String| {
                 text.parse::<u64>()
-                    .map_err(|_| format!("{text} is no number"))
+                    .map_err(|_| format!("{text} is not a number"))
             };
             match word.as_str() {
                 "--seed" => options.seed = number(next()?)?,
@@ -127,14 +129,14 @@ impl Options {
                     options.is_child = true;
                     options.folder = next()?.into();
                 }
-                _ => return Err(format!("{word} is not known")),
+                _ => return Err(format!("unknown option {word}")),
             }
         }
         Ok(options)
     }
 }
 
-/// The arguments of a call are those of this seed.
+/// The seed of a call's arguments.
 fn seed_of(seed: u64, name: &str, number: u64) -> u64 {
     let hash = name.bytes().fold(0xcbf2_9ce4_8422_2325, |hash: u64, byte| {
         (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
@@ -151,18 +153,18 @@ thread_local! {
 }
 
 thread_local! {
-    /// What the last panic of this thread said.
+    /// The message of this thread's last panic.
     static OWN_PANIC: Cell<Option<String>> = const { Cell::new(None) };
 }
 
-/// What the last panic of any thread said: a call may panic on one of rayon's.
+/// The message of any thread's last panic: a call may panic on one of rayon's threads.
 static LAST_PANIC: Mutex<String> = Mutex::new(String::new());
 
 fn watch_panics() {
     std::panic::set_hook(Box::new(|info| {
         let message = info.to_string().replace('\n', " ");
         let (name, number) = NOW.get();
-        // After these the process ends, and nothing else says why.
+        // After these the process ends, and nothing else reports why.
         if message.contains("unsafe precondition") || message.contains("cannot unwind") {
             eprintln!(
                 "{name} {number}: {message}\n{}",
@@ -187,14 +189,14 @@ fn last_panic() -> String {
     OWN_PANIC.take().unwrap_or_else(of_any)
 }
 
-/// Where each thread is, for whoever asks after it has hung.
+/// The call that a thread makes now, for the watcher of hangs.
 #[derive(Default)]
 struct Place {
     function: AtomicU64,
     number: AtomicU64,
 }
 
-/// What is known of a function.
+/// The calls of a function so far.
 #[derive(Clone, Copy, Default)]
 struct Share {
     calls: u64,
@@ -204,9 +206,9 @@ struct Share {
 
 #[derive(Default)]
 struct Findings {
-    /// By function and message: how often, and the first call.
+    /// For each function and message: how often it panicked, and the number of the first call.
     panics: BTreeMap<(&'static str, String), (u64, u64)>,
-    /// Calls that took more than they were asked for.
+    /// The numbers of calls that took too long.
     slow: BTreeMap<&'static str, Vec<u64>>,
 }
 
@@ -229,7 +231,7 @@ fn main() -> ExitCode {
     })
 }
 
-/// Runs the calls in a process of its own, to be there after a crash.
+/// Runs the calls in a child process, and finds the call after a crash.
 fn parent(options: &Options) -> std::io::Result<ExitCode> {
     let folder = tempfile::tempdir()?;
     let of = |arguments: &[String]| {
@@ -252,7 +254,7 @@ fn parent(options: &Options) -> std::io::Result<ExitCode> {
     if let Some(code) = status.code() {
         return Ok(ExitCode::from(code as u8));
     }
-    println!("CRASH: {status}; what was called last, once more:");
+    println!("CRASH: {status}; repeating the last calls:");
     for entry in std::fs::read_dir(folder.path())? {
         let path = entry?.path();
         if path
@@ -317,7 +319,7 @@ fn child(options: &Options) -> std::io::Result<ExitCode> {
     }
     match gpu {
         Some(gpu) => println!("GPU: {}", gpu.name()),
-        None => println!("SKIPPED: {without} functions of a GPU, for there is no adapter"),
+        None => println!("SKIPPED: {without} functions that need a GPU: there is no adapter"),
     }
     println!(
         "{} calls to make, seed {}",
@@ -375,7 +377,7 @@ fn work(
     loop {
         let is_late = started.elapsed().as_secs() >= options.seconds;
         let is_done = is_late && made.load(Ordering::Relaxed) >= options.calls;
-        // The function that has had the least.
+        // The function that has had the least time.
         let next = {
             let mut shares = shares
                 .lock()
@@ -394,7 +396,7 @@ fn work(
             next.map(|next| (next, shares[next].calls))
         };
         let Some((function, first)) = next else {
-            // Others may be at work on the last.
+            // Other threads may still call the last functions.
             let shares = shares
                 .lock()
                 .expect("not poisoned: calls are made without it");
@@ -449,7 +451,7 @@ fn work(
     }
 }
 
-/// Ends the process when a thread does not come on.
+/// Ends the process if a thread hangs.
 fn watch(places: &[Place], is_over: &AtomicBool) {
     let mut seen = vec![(u64::MAX, 0, Instant::now()); places.len()];
     while !is_over.load(Ordering::Relaxed) {
@@ -469,11 +471,11 @@ fn watch(places: &[Place], is_over: &AtomicBool) {
     }
 }
 
-/// Of many panics at one place with other numbers, one.
+/// The message with its numbers replaced, so that panics at one place count as one.
 fn without_numbers(message: &str) -> String {
     let mut short = String::new();
     for c in message.chars().take(400) {
-        // The place keeps its numbers: it comes first.
+        // The place comes first and keeps its numbers.
         if c.is_ascii_digit() && short.contains(": ") {
             if !short.ends_with('#') {
                 short.push('#');
@@ -487,13 +489,13 @@ fn without_numbers(message: &str) -> String {
 
 fn replay(options: &Options, name: &str, from: u64, to: u64) -> ExitCode {
     let Some(call) = calls::CALLS.iter().find(|call| call.name == name) else {
-        eprintln!("there is no {name}");
+        eprintln!("there is no function {name}");
         return ExitCode::from(2);
     };
     let mut is_good = true;
     for number in from..=to {
         NOW.set((call.name, number));
-        // What is said last before a crash is what crashes.
+        // After a crash, this file names the call.
         let last = options.folder.join("last");
         if std::fs::write(last, format!("{name} {number}")).is_err() || from == to {
             println!("{name} {number}:");
@@ -533,7 +535,7 @@ fn report(
         let Some(call) = calls::CALLS.iter().find(|call| call.name == *name) else {
             continue;
         };
-        // The machine may have been busy: once more, alone.
+        // The machine may have been busy: repeat the call alone.
         for number in numbers.iter().take(3) {
             let mut source = Source::new(seed_of(options.seed, name, *number), false);
             let started = Instant::now();
@@ -549,7 +551,7 @@ fn report(
         .map(|((call, share), _)| (share.calls, share.time, call.name))
         .collect();
     counts.sort_unstable_by_key(|(count, time, _)| time.as_nanos() / u128::from(*count).max(1));
-    println!("the dearest:");
+    println!("the slowest:");
     for (count, time, name) in counts.iter().rev().take(12) {
         println!("    {count} calls in {:.1} s: {name}", time.as_secs_f64());
     }
@@ -557,7 +559,7 @@ fn report(
     let all: u64 = counts.iter().map(|(count, ..)| count).sum();
     let median = counts.get(counts.len() / 2).map_or(0, |(count, ..)| *count);
     println!(
-        "{all} calls of {} functions in {:.0} s; half of them {median} times and more",
+        "{all} calls of {} functions in {:.0} s; half of the functions at least {median} times",
         counts.len(),
         took.as_secs_f64()
     );

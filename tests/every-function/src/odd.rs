@@ -1,4 +1,5 @@
-//! [`Odd`]: values of every type that a public function takes, ordinary ones, extreme ones, and any bits.
+//! [`Odd`]: makes values of every type that a public function takes: ordinary values, extreme
+//! values and any bits.
 
 use std::ffi::OsString;
 use std::fmt::Debug;
@@ -42,7 +43,7 @@ use spherule::trace::gpu::Batch;
 use spherule::trace::{CpuTracer, GpuTracer};
 use spherule::{Gpu, Image, Scene, kernel_module};
 
-/// Numbers at which arithmetic turns odd.
+/// Numbers at which arithmetic behaves oddly.
 const NUMBERS: [f32; 26] = [
     f32::NAN,
     -f32::NAN,
@@ -72,17 +73,17 @@ const NUMBERS: [f32; 26] = [
     0.5,
 ];
 
-/// Where the values of one call come from.
+/// The source of the values of one call.
 pub struct Source {
     state: u64,
-    /// Of 16 numbers, how many are odd: there must be calls in which one is.
+    /// How many of 16 numbers are odd: there must be calls in which only one is.
     oddness: u64,
-    /// Whether arguments are written out.
+    /// Whether arguments are printed.
     tells: bool,
 }
 
 impl Source {
-    /// The source of one call.
+    /// The source for a call with this seed.
     pub fn new(seed: u64, tells: bool) -> Self {
         let mut source = Self {
             state: seed,
@@ -132,18 +133,18 @@ impl Source {
         value
     }
 
-    /// A value.
+    /// A value; prints it if arguments are printed.
     pub fn draw<T: Odd + Debug>(&mut self) -> T {
         let value = T::odd(self);
         self.tell(value)
     }
 
-    /// Several.
+    /// Several values.
     pub fn many<T: Odd + Debug>(&mut self) -> Vec<T> {
         self.draw()
     }
 
-    /// A number of things to do.
+    /// An amount of work.
     pub fn few<T: TryFrom<u32> + Debug>(&mut self) -> T {
         let count = match self.below(8) {
             0 => 0,
@@ -155,7 +156,7 @@ impl Source {
         self.tell(count)
     }
 
-    /// A side of an image for which room is made at most.
+    /// A side of an image for which at most memory is allocated.
     pub fn side(&mut self) -> u32 {
         let side = match self.below(4) {
             0 => self.pick(&[0, 1, u32::MAX, 1 << 31, 65_536]),
@@ -170,13 +171,13 @@ impl Source {
         self.tell(value)
     }
 
-    /// Any path, in a folder of its own.
+    /// Any path, in the current folder.
     pub fn path(&mut self) -> PathBuf {
         let value = PathBuf::odd(self);
         self.tell(value)
     }
 
-    /// Where files can be put, or not.
+    /// A path that can be written, or not.
     pub fn folder(&mut self) -> PathBuf {
         let value = self.pick(&[
             "folder",
@@ -189,7 +190,7 @@ impl Source {
         self.tell(value.into())
     }
 
-    /// What a file of this kind may hold.
+    /// Possible contents of a file of this kind.
     pub fn file(&mut self, kind: &str) -> String {
         let whole = match kind {
             "pdb" => PDB,
@@ -225,7 +226,7 @@ impl Source {
         self.tell(value)
     }
 
-    /// A module of SPIR-V, more or less.
+    /// The bytes of a SPIR-V module, perhaps damaged.
     pub fn module(&mut self) -> Vec<u8> {
         let mut bytes = match self.below(4) {
             0 => Vec::<u8>::odd(self),
@@ -235,7 +236,7 @@ impl Source {
             if bytes.is_empty() {
                 break;
             }
-            // The beginning is where most is said.
+            // The first bytes matter most.
             let end = if self.one_in(2) {
                 bytes.len().min(2000)
             } else {
@@ -274,34 +275,34 @@ impl Source {
         self.tell(value)
     }
 
-    /// The adapter that there is.
+    /// The adapter that all calls share.
     pub fn gpu(&mut self) -> &'static Gpu {
-        gpu_of_all().expect("only called where there is one")
+        gpu_of_all().expect("only called if there is one")
     }
 
-    /// A kernel on it.
+    /// A kernel on that adapter.
     pub fn kernel(&mut self) -> &'static Kernel {
         static KERNEL: OnceLock<Kernel> = OnceLock::new();
         KERNEL.get_or_init(|| {
             let module = kernel_module::f32().expect("the module is embedded");
             let access = [Access::Read, Access::ReadWrite];
-            let gpu = gpu_of_all().expect("only called where there is one");
+            let gpu = gpu_of_all().expect("only called if there is one");
             gpu.kernel(&module, "cross_boundaries", &access)
-                .expect("a kernel of ours")
+                .expect("one of spherule's kernels")
         })
     }
 }
 
-/// The adapter of calls that need one.
+/// The adapter for calls that need one.
 pub fn gpu_of_all() -> Option<&'static Gpu> {
     static GPU: OnceLock<Option<Gpu>> = OnceLock::new();
     GPU.get_or_init(|| Gpu::open(&spherule::DeviceChoice::Gpu).ok())
         .as_ref()
 }
 
-/// Can be made, ordinary or odd.
+/// A type whose values can be made, ordinary or odd.
 pub trait Odd {
-    /// One.
+    /// Makes one value.
     fn odd(s: &mut Source) -> Self;
 }
 
@@ -379,7 +380,7 @@ impl Odd for Duration {
 }
 
 impl Odd for std::time::Instant {
-    /// Now, or soon.
+    /// Now or soon.
     fn odd(s: &mut Source) -> Self {
         Self::now() + Duration::from_nanos(s.bits() % 1_000_000)
     }
@@ -547,7 +548,7 @@ impl Odd for UVec4 {
     }
 }
 
-// The kernel's.
+// Types of the kernel.
 
 impl Odd for Camera {
     fn odd(s: &mut Source) -> Self {
@@ -626,7 +627,7 @@ impl Odd for RoughMetal {
     }
 }
 
-/// The tables that kernels read, or not.
+/// The tables that the kernel reads, or tables of odd values.
 fn table(s: &mut Source) -> Vec<f32> {
     static ALBEDO: OnceLock<Vec<f32>> = OnceLock::new();
     if s.one_in(2) {
@@ -723,7 +724,7 @@ impl Odd for OddTree {
 }
 
 impl OddTree {
-    /// The tree; none if the nodes are no tree.
+    /// The tree; `Tree::NONE` if the nodes are not a tree.
     pub fn get(&self) -> kernel_tree::Tree<'_> {
         kernel_tree::Tree::of(&self.0).unwrap_or(kernel_tree::Tree::NONE)
     }
@@ -805,7 +806,7 @@ impl OddScenery {
     }
 }
 
-// The host's.
+// Types of the host.
 
 impl Odd for Nodes {
     fn odd(s: &mut Source) -> Self {
@@ -876,7 +877,7 @@ impl Odd for World {
 }
 
 impl Odd for Scene {
-    /// Mostly one that can be rendered, of few pixels and samples.
+    /// Mostly a scene that can be rendered, with few pixels and samples.
     fn odd(s: &mut Source) -> Self {
         let mut scene = Self::new(Odd::odd(s));
         (scene.width, scene.height) = (1 + s.below(12) as u32, 1 + s.below(12) as u32);
@@ -940,7 +941,7 @@ impl Odd for Scene {
         if s.one_in(4) {
             scene.sampling.ambient_occlusion = Some(s.unit() + 0.1);
         }
-        // Then some of it is odd.
+        // Then parts of it become odd.
         let changes = if s.oddness == 0 { 0 } else { s.below(4) };
         for _ in 0..changes {
             match s.below(16) {
@@ -1046,11 +1047,12 @@ impl Odd for Image {
             Shading::Depth,
             Shading::Flat,
         ]);
-        let mut image = Self::new(width, height, shading, pixels).expect("as many pixels");
+        let mut image =
+            Self::new(width, height, shading, pixels).expect("the image has this many pixels");
         if s.one_in(3) {
             image
                 .set_alpha((0..count).map(|_| Odd::odd(s)).collect())
-                .expect("one for each");
+                .expect("there is one for each pixel");
         }
         image.develop.exposure = Odd::odd(s);
         image.develop.tonemap = s.pick(&[Tonemap::Clamp, Tonemap::Reinhard, Tonemap::Aces]);
@@ -1079,7 +1081,7 @@ impl Odd for Pace {
 }
 
 impl Odd for paths::Prepared {
-    /// As it is prepared, and then not quite so.
+    /// A prepared scene with some odd changes.
     fn odd(s: &mut Source) -> Self {
         static PLAIN: OnceLock<paths::Prepared> = OnceLock::new();
         let choice = s.pick(&[EffectChoice::Auto, EffectChoice::All]);
@@ -1235,7 +1237,7 @@ impl Odd for Plan {
 }
 
 impl Odd for BenchScene {
-    /// None of a million spheres.
+    /// Never one with a million spheres.
     fn odd(s: &mut Source) -> Self {
         match s.below(4) {
             0 => Self::S2,

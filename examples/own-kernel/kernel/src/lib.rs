@@ -1,8 +1,8 @@
-//! Where is there room in a world of spheres? For each point of a grid: how many spheres contain
-//! it, and how far it is, going along +z, to the next surface.
+//! Finds the free room in a world of spheres: for each point of a grid, how many spheres contain
+//! it, and how far along +z the next surface is.
 //!
-//! The types and the search for the nearest hit are `spherule-kernel`'s; only the question is
-//! new. This file is compiled twice, for the GPU and for the CPU.
+//! The types and the search for the nearest hit come from `spherule-kernel`. This file is compiled
+//! twice, for the GPU and for the CPU.
 
 #![no_std]
 
@@ -17,11 +17,11 @@ use spirv_std::spirv;
 pub struct Grid {
     /// The first point.
     pub origin: Vec3,
-    /// The distance between neighbours.
+    /// The distance between neighbours, in scene units.
     pub spacing: f32,
-    /// Points along each axis.
+    /// The number of points along each axis.
     pub points_per_side: u32,
-    /// A uniform's size is a multiple of 16 bytes.
+    /// Unused: a uniform's size is a multiple of 16 bytes.
     pub padding: [u32; 3],
 }
 
@@ -34,18 +34,18 @@ impl Grid {
     }
 }
 
-/// What is found at a point.
+/// The result for a point.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Room {
-    /// How many spheres contain the point.
+    /// The number of spheres that contain the point.
     pub inside: u32,
-    /// The distance to the next surface along +z; [`spherule_kernel::Hit::NONE_T`] if there is
-    /// none.
+    /// The distance along +z to the next surface, in scene units;
+    /// [`spherule_kernel::Hit::NONE_T`] if there is none.
     pub clearance: f32,
 }
 
-/// The plain function: the CPU calls it, and so does the entry point.
+/// Computes the result for a point. The entry point calls it on the GPU, the host on the CPU.
 pub fn measure_room(point: Vec3, spheres: &[Sphere]) -> Room {
     let mut inside = 0;
     let mut index = 0;
@@ -61,7 +61,7 @@ pub fn measure_room(point: Vec3, spheres: &[Sphere]) -> Room {
     }
 }
 
-/// The entry point: one thread a point.
+/// The entry point, with one thread a point.
 #[spirv(compute(threads(64), entry_point_name = "measure_rooms"))]
 pub fn measure_rooms(
     #[spirv(global_invocation_id)] id: UVec3,

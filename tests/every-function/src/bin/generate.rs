@@ -1,9 +1,10 @@
-//! Writes `src/calls.rs`: a call of each public function of spherule and of its kernel, as rustdoc's JSON has them.
+//! Writes `src/calls.rs`: a call of each public function of spherule and of its kernel, from
+//! rustdoc's JSON.
 //!
 //!     generate spherule_kernel.json spherule.json > src/calls.rs
 //!
-//! A function whose arguments nothing is known to make fails it, unless [`LEFT_OUT`] says why it is not called. So does
-//! an entry of a table here that no function needs any more.
+//! It fails if it cannot make the arguments of a function, unless [`LEFT_OUT`] says why the
+//! function is not called. It also fails if no function needs an entry of a table here any more.
 
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
@@ -15,7 +16,7 @@ use rustdoc_types::{
     ItemEnum, StructKind, Type, VariantKind, Visibility, WherePredicate,
 };
 
-/// Functions that are not called, and why.
+/// Functions that are not called, and the reason.
 const LEFT_OUT: &[(&str, &str)] = &[
     (
         "spherule::cli::run",
@@ -59,10 +60,11 @@ const LEFT_OUT: &[(&str, &str)] = &[
     ),
 ];
 
-/// What generic types and functions are called with, unless [`WRITTEN`] says.
+/// The type arguments for generic types and functions, unless [`WRITTEN`] has the call.
 const NUMBER: &str = "f32";
 
-/// Whole calls, where a generic argument has to be chosen, or arguments have to fit or borrow one another.
+/// Calls written by hand, if a generic argument must be chosen, or if arguments must fit or borrow
+/// one another.
 const WRITTEN: &[(&str, &[&str])] = &[
     (
         "spherule_kernel::arithmetic::distill::distill",
@@ -140,7 +142,7 @@ const WRITTEN: &[(&str, &[&str])] = &[
     ),
 ];
 
-/// Expressions for arguments, by the function and the argument's name.
+/// Expressions for arguments, by function and argument name.
 const ARGUMENTS: &[(&str, &str, &str)] = &[
     ("spherule::bench::export::export", "folder", "&s.folder()"),
     ("spherule::render::cpu::render", "launch", "&s.launch()"),
@@ -170,14 +172,15 @@ const ARGUMENTS: &[(&str, &str, &str)] = &[
     ),
 ];
 
-/// Arguments that say how much is to be done, by their names: they are small.
+/// Names of arguments that say how much work is done: these are small.
 const WORK: &[&str] = &["bounces", "count", "height", "most", "rounds", "width"];
 
-/// Functions that take long whatever they are told: at most so many calls, and the seconds that one may take.
+/// Functions that take long whatever their arguments: the largest number of calls, and the seconds
+/// that one may take.
 const FEW: &[(&str, u64, u64)] = &[
-    // Measures the machine.
+    // This measures the machine.
     ("spherule::bench::limit::Limit::of", 2, 20),
-    // Compile the largest kernel, on an adapter in software for ten seconds.
+    // These compile the largest kernel, which takes ten seconds on a software adapter.
     ("spherule::render::paths::gpu::compile", 2, 120),
     ("spherule::render::paths::gpu::render", 2, 120),
 ];
@@ -218,7 +221,7 @@ const BY_HAND: &[&str] = &[
     "spherule_kernel::sphere::Sphere",
 ];
 
-/// Types that `src/odd.rs` needs, and no argument.
+/// Types that `src/odd.rs` needs and no function takes.
 const ALSO: &[&str] = &[
     "spherule::accuracy::frames::Frame",
     "spherule::accuracy::measure::Measured",
@@ -228,7 +231,7 @@ const ALSO: &[&str] = &[
     "spherule_kernel::light::Light",
 ];
 
-/// Types that borrow: what owns the parts of one, in `src/odd.rs`.
+/// Types that borrow, and the types in `src/odd.rs` that own their parts.
 const OWNED: &[(&str, &str)] = &[
     ("spherule::render::cpu::Prepared", "OddPrepared"),
     ("spherule_kernel::path::Scenery", "OddScenery"),
@@ -240,7 +243,7 @@ const OWNED: &[(&str, &str)] = &[
     ("spherule_kernel::accel::node::Tree", "OddTree"),
 ];
 
-/// Types that are given as they are.
+/// Types whose values are written literally.
 const GIVEN: &[(&str, &str)] = &[
     ("spherule::device::Device", "&spherule::Device::Cpu"),
     ("spherule::device::gpu::Gpu", "s.gpu()"),
@@ -248,7 +251,7 @@ const GIVEN: &[(&str, &str)] = &[
     ("spherule::render::Progress", "spherule::render::QUIET"),
 ];
 
-/// Types of others that `src/odd.rs` makes.
+/// Types of other crates that `src/odd.rs` makes.
 const FOREIGN: &[&str] = &[
     "Box", "Duration", "Element", "Instant", "Option", "PathBuf", "Range", "String", "UVec2",
     "UVec3", "UVec4", "Vec", "Vec2", "Vec3", "Vec4",
@@ -272,19 +275,19 @@ fn main() -> Result<()> {
 
 #[derive(Default)]
 struct Generator<'a> {
-    /// Public types by where they are defined: the path to them, and what they are.
+    /// Public types by where they are defined: their public path and their item.
     types: HashMap<String, (String, &'a Crate, &'a Item)>,
     seen: BTreeSet<(String, Id)>,
-    /// Where each is defined, the path to it, and of a method its type.
+    /// Public functions: where each is defined, its public path, and the type of a method.
     functions: Vec<(String, String, &'a Crate, &'a Item, Option<String>)>,
     impls: Vec<(String, &'a Crate, &'a Impl)>,
     traits: Vec<(String, &'a Crate, &'a Item)>,
-    /// What of the tables was needed.
+    /// The entries of the tables that were needed.
     used: RefCell<BTreeSet<String>>,
 }
 
 impl<'a> Generator<'a> {
-    /// Finds what is public.
+    /// Finds the public items.
     fn module(&mut self, krate: &'a Crate, id: Id, path: &[&str]) {
         let Some(item) = krate.index.get(&id) else {
             return;
@@ -366,7 +369,7 @@ impl<'a> Generator<'a> {
         let mut calls: BTreeMap<String, Vec<String>> = BTreeMap::new();
         let mut mistakes = Vec::new();
         for (defined, path, krate, item, of) in &self.functions {
-            // Where a function is defined says which it is; how it is called is another matter.
+            // A function is identified by where it is defined, and may be called by another path.
             let defined = if of.is_some() {
                 defined.clone()
             } else {
@@ -443,7 +446,7 @@ impl<'a> Generator<'a> {
         found
     }
 
-    /// The calls of a function.
+    /// Makes the calls of a function.
     fn call(
         &self,
         krate: &Crate,
@@ -483,7 +486,7 @@ impl<'a> Generator<'a> {
             .collect())
     }
 
-    /// Expressions for an argument.
+    /// Makes the expressions for an argument.
     fn argument(
         &self,
         krate: &Crate,
@@ -542,7 +545,7 @@ impl<'a> Generator<'a> {
                 Some(GenericBound::TraitBound { trait_, .. }) if trait_.path == "Into" => {
                     one("s.draw::<spherule::render::Settings>()")
                 }
-                _ => Err("an argument of any type with a trait that is not known here".into()),
+                _ => Err("an argument of any type with an unknown trait".into()),
             },
             Type::ResolvedPath(path) if path.path == "Option" => {
                 let inner = first_argument(path.args.as_deref());
@@ -579,7 +582,7 @@ impl<'a> Generator<'a> {
         }
     }
 
-    /// Notes that a type has to be made.
+    /// Notes that values of a type must be made.
     fn need(&self, krate: &Crate, ty: &Type, needed: &mut BTreeSet<String>) -> Result<()> {
         match ty {
             Type::Primitive(name) if name != "never" => Ok(()),
@@ -602,13 +605,13 @@ impl<'a> Generator<'a> {
                 needed.insert(definition(krate, path.id));
                 Ok(())
             }
-            // Chosen: a number, or what the call says.
+            // A generic type is a number, or chosen by the call.
             Type::Generic(_) => Ok(()),
-            _ => Err(format!("nothing is known to make {ty:?}").into()),
+            _ => Err(format!("no way is known to make {ty:?}").into()),
         }
     }
 
-    /// Calls of the methods of other crates' traits that are written by hand.
+    /// Makes calls of the methods of other crates' traits that are implemented by hand.
     fn trait_calls(
         &self,
         krate: &Crate,
@@ -647,7 +650,7 @@ impl<'a> Generator<'a> {
                     self.spell(krate, from)?
                 )
             }
-            _ => return Err(format!("a trait that is not known here: {name}").into()),
+            _ => return Err(format!("unknown trait: {name}").into()),
         };
         if !matches!(name, "Default" | "FromStr" | "From") && owner.is_none() {
             needed.insert(defined.into());
@@ -659,7 +662,7 @@ impl<'a> Generator<'a> {
         Ok(())
     }
 
-    /// Calls of the methods of our own traits, on all that have them.
+    /// Makes calls of the methods of our own traits, on every type that implements them.
     fn impls_of(
         &self,
         path: &str,
@@ -715,7 +718,7 @@ impl<'a> Generator<'a> {
         Ok(())
     }
 
-    /// A type as calls.rs spells it.
+    /// A type as it is written in calls.rs.
     fn spell(&self, krate: &Crate, ty: &Type) -> Result<String> {
         Ok(match ty {
             Type::Primitive(name) => name.clone(),
@@ -743,7 +746,7 @@ impl<'a> Generator<'a> {
         })
     }
 
-    /// How types whose fields are public are made, field by field, in calls.rs.
+    /// Writes how calls.rs makes types with public fields, field by field.
     fn odd_types(&self, needed: BTreeSet<String>, mistakes: &mut Vec<String>) -> Vec<String> {
         let mut written = Vec::new();
         let mut done = BTreeSet::new();
@@ -772,7 +775,7 @@ impl<'a> Generator<'a> {
             for id in ids {
                 let field = krate.index.get(id).ok_or("a private field")?;
                 let ItemEnum::StructField(ty) = &field.inner else {
-                    return Err("a field that is none".into());
+                    return Err("an item that is not a field".into());
                 };
                 self.need(krate, ty, needed)?;
                 let name = field.name.as_deref().unwrap_or_default();
@@ -794,7 +797,7 @@ impl<'a> Generator<'a> {
                 for (index, id) in it.variants.iter().enumerate() {
                     let variant = &krate.index[id];
                     let ItemEnum::Variant(kind) = &variant.inner else {
-                        return Err("a variant that is none".into());
+                        return Err("an item that is not a variant".into());
                     };
                     let name = variant.name.as_deref().unwrap_or_default();
                     let made = match &kind.kind {
@@ -833,7 +836,7 @@ impl<'a> Generator<'a> {
     }
 }
 
-/// The number for what is generic over lanes.
+/// The type argument for functions that are generic over lanes.
 fn turbofish(generics: &Generics) -> &'static str {
     use rustdoc_types::GenericParamDefKind;
     let is_lane = |kind: &GenericParamDefKind| matches!(kind, GenericParamDefKind::Type { .. });
@@ -875,7 +878,7 @@ fn first_argument(args: Option<&GenericArgs>) -> Option<&Type> {
     })
 }
 
-/// The traits that a generic argument has.
+/// The traits that a generic argument must implement.
 fn bounds(generics: &Generics, name: &str) -> BTreeSet<String> {
     use rustdoc_types::GenericParamDefKind;
     let own = generics
