@@ -522,8 +522,9 @@ fn exr_files_hold_measurements() {
                 assert_eq!(names, ["A", "B", "G", "R"]);
                 let normals = ["R", "G", "B"].map(floats);
                 assert!(normals[1].iter().any(|y| *y < -0.5), "signed");
-                for index in 0..alpha.len() {
-                    let normal = Vec3::from_array([0, 1, 2].map(|axis| normals[axis][index]));
+                let [x, y, z] = &normals;
+                for (index, ((x, y), z)) in x.iter().zip(y).zip(z).enumerate() {
+                    let normal = Vec3::new(*x, *y, *z);
                     let length = if is_hit(index) { 1.0 } else { 0.0 };
                     assert!((normal.length() - length).abs() < 1e-6, "{normal}");
                 }

@@ -9,7 +9,6 @@
 //! | [`families`] | families of rays, each hard in its own way |
 //! | [`screen`] | 64-bit arithmetic with an error bound, which saves most of the oracle's work |
 //! | [`measure`] | the errors of a rung |
-//! | [`choose`] | the choice of the rung for a scene |
 //! | [`scene_rays`] | the rays of a scene as a family |
 //! | [`frames`] | the time and the errors of a whole frame on each rung |
 //! | [`samples`] | the error of an image for more and more samples |

@@ -93,18 +93,24 @@ impl Device {
         }
     }
 
-    /// The device's name for people.
+    /// Opens the CPU. Also returns the reason for the choice, in a few words.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::NoAdapter`](crate::Error::NoAdapter) if a GPU was requested: this build has none.
     #[cfg(not(feature = "gpu"))]
     pub fn open(choice: &DeviceChoice) -> Result<(Self, String)> {
         match choice {
             DeviceChoice::Auto => Ok((Self::Cpu, "built without the feature `gpu`".into())),
-            DeviceChoice::Cpu => Ok((Self::Cpu, "asked for".into())),
+            DeviceChoice::Cpu => Ok((Self::Cpu, "requested".into())),
             DeviceChoice::Gpu | DeviceChoice::Named(_) => Err(crate::Error::NoAdapter {
                 wanted: format!("can be used for `{choice}`"),
                 found: "this build has the feature `gpu` off".into(),
             }),
         }
     }
+
+    /// The device's name for people.
     #[must_use]
     pub fn name(&self) -> String {
         match self {

@@ -22,6 +22,7 @@ pub struct Called {
 const RANDOM: Effects = Effects::SOFT_SHADOWS
     .and(Effects::AMBIENT_OCCLUSION)
     .and(Effects::ROUGH_METAL)
+    .and(Effects::PLASTIC)
     .and(Effects::GLASS)
     .and(Effects::INTERREFLECTION)
     .and(Effects::DEFOCUS)
@@ -61,7 +62,8 @@ impl Scene {
         if samples > 1 {
             called.push(of(Effects::ANTIALIASING, by));
         }
-        if !called.is_empty() && !self.has_light() && self.first_of(Material::DIFFUSE).is_some() {
+        let is_lit = |m: &Material| matches!(m.kind, Material::DIFFUSE | Material::PLASTIC);
+        if !called.is_empty() && !self.has_light() && self.first_material(&is_lit).is_some() {
             called.push(of(
                 Effects::HEADLAMP,
                 "the scene has no light: no [[light]], no [sky], nothing that glows, no ambient occlusion".into(),
@@ -119,9 +121,16 @@ impl Scene {
                 format!("{} is of kind glass", material(index)),
             );
         }
+        let plastic = of_kind(Material::PLASTIC);
+        if let Some(index) = plastic {
+            call(
+                Effects::PLASTIC,
+                format!("{} is of kind plastic", material(index)),
+            );
+        }
         let diffuse = of_kind(Material::DIFFUSE);
         // Mirrors and glass do not look for light.
-        let seeks = diffuse.is_some() || rough.is_some() || self.fog.is_some();
+        let seeks = diffuse.is_some() || rough.is_some() || plastic.is_some() || self.fog.is_some();
         if seeks && !self.lights.is_empty() {
             call(
                 Effects::HARD_SHADOWS,

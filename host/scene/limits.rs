@@ -114,10 +114,12 @@ pub const INTENSITY: Range = Range::new(0.0, 1e18);
 pub const IRRADIANCE: Range = Range::new(0.0, MAX_RADIANCE);
 /// What a radiance is multiplied by. The product is a [`RADIANCE`].
 pub const STRENGTH: Range = Range::new(0.0, 1e12);
-/// The roughness of a metal.
+/// The roughness of metal and plastic.
 pub const ROUGHNESS: Range = Range::new(0.0, 1.0);
 /// The refractive index of glass over that of what surrounds it.
 pub const INDEX: Range = Range::new(0.1, 10.0);
+/// The refractive index of plastic's coat.
+pub const COAT_INDEX: Range = Range::new(1.1, 4.0);
 /// A channel of what glass absorbs, per scene unit.
 pub const ABSORPTION: Range = Range::new(0.0, 1e18);
 /// The angle across the sun, in degrees.

@@ -272,10 +272,15 @@ fn validate_material(index: usize, material: &Material) -> Result<()> {
             one(of("the index"), index_outside, limits::INDEX)?;
             all(of("the absorption"), material.volume, limits::ABSORPTION)
         }
+        Material::PLASTIC => {
+            all(of("the color"), material.color, limits::REFLECTANCE)?;
+            one(of("α"), material.parameter, limits::ROUGHNESS)?;
+            one(of("the index"), material.volume.x, limits::COAT_INDEX)
+        }
         Material::EMISSIVE => all(of("the radiance"), material.volume, limits::RADIANCE),
         kind => Err(wrong(
             format!("material {index} is of the kind {kind}, which there is not"),
-            "make materials by Material's functions: diffuse, metal, glass, bubble, emissive",
+            "make materials by Material's functions: diffuse, metal, plastic, glass, bubble, emissive",
         )),
     }
 }

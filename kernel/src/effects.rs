@@ -61,6 +61,8 @@ effects! {
     ENVIRONMENT = 15, "environment";
     /// A background that is transparent in the image.
     TRANSPARENT_BACKGROUND = 16, "transparent-background";
+    /// A diffuse base under a clear coat.
+    PLASTIC = 17, "plastic";
 }
 
 impl Effects {

@@ -41,6 +41,17 @@ impl Surface {
         }
     }
 
+    /// The normal on the side that `direction` comes from.
+    #[inline]
+    #[must_use]
+    pub fn facing(&self, direction: Vec3) -> Vec3 {
+        if self.normal.dot(direction) > 0.0 {
+            -self.normal
+        } else {
+            self.normal
+        }
+    }
+
     /// A ray that leaves the surface along `direction`, on the side of the sphere that the
     /// direction points to, and from outside of the band in which rounding decides what is inside:
     /// it does not hit again what it leaves, however small or large that is.

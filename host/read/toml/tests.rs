@@ -280,6 +280,18 @@ fn each_key_of_the_effects_refuses_what_it_cannot_be() {
         ),
         ("[materials.m]\nkind = \"glass\"\nindex = 0", "index = 0"),
         (
+            "[materials.m]\nkind = \"plastic\"\ncolor = [1, 1, 1]\nindex = 1",
+            "index = 1 is not possible",
+        ),
+        (
+            "[materials.m]\nkind = \"plastic\"\ncolor = [1, 1, 1]\nstrength = 1",
+            "a material of kind plastic has no strength",
+        ),
+        (
+            "[materials.m]\nkind = \"plastic\"\ncolor = [1, 2, 1]",
+            "channel above one",
+        ),
+        (
             "[materials.m]\nkind = \"glass\"\nabsorption = [-1, 0, 0]",
             "below zero",
         ),

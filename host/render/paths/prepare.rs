@@ -221,7 +221,7 @@ fn fog(scene: &Scene, eye: Vec3) -> Fog {
 
 fn tables(scene: &Scene, shown: Effects) -> Vec<f32> {
     let mut tables = Vec::new();
-    if shown.any(Effects::ROUGH_METAL) {
+    if shown.any(Effects::ROUGH_METAL.and(Effects::PLASTIC)) {
         // It takes a fifth of a second.
         static ALBEDO: LazyLock<[f32; ALBEDO_LEN]> = LazyLock::new(Albedo::table);
         tables.extend_from_slice(&*ALBEDO);

@@ -1,4 +1,4 @@
-//! Rough metal: a surface of tiny mirrors. Runs on the GPU and on the CPU.
+//! Rough surfaces of tiny mirrors, and rough metal made of them. Runs on the GPU and on the CPU.
 //!
 //! The mirrors' normals follow the GGX distribution and shadow each other as E. Heitz derives for
 //! Smith's model (Understanding the Masking-Shadowing Function in Microfacet-Based BRDFs, J.
@@ -28,8 +28,10 @@ pub const SMOOTHEST: f32 = 1e-3;
 
 /// Entries along each side of the table of E.
 pub const ALBEDO_SIDE: usize = 32;
-/// Floats in the table: E at (cos θ, α), row by row of one α, and then the mean of E for each α.
-pub const ALBEDO_LEN: usize = ALBEDO_SIDE * ALBEDO_SIDE + ALBEDO_SIDE;
+/// Floats of one share in the table: at (cos θ, α), row by row of one α, and then the mean for each α.
+const SHARE_LEN: usize = ALBEDO_SIDE * ALBEDO_SIDE + ALBEDO_SIDE;
+/// Floats in the table: both of [`Shares`].
+pub const ALBEDO_LEN: usize = 2 * SHARE_LEN;
 
 /// Schlick's approximation of the reflectance of a metal whose colour seen straight on is `color`.
 #[inline]
@@ -61,7 +63,8 @@ fn hidden(z: f32, alpha: f32) -> f32 {
 /// Reflected light of one bounce, over the metal's own reflectance: D G / (4 cos cos) times the
 /// cosine of `to`, and the density of sampling `to` by [`sample_visible`].
 #[inline]
-fn single_bounce(from: Vec3, to: Vec3, alpha: f32) -> (f32, f32) {
+#[must_use]
+pub(super) fn single_bounce(from: Vec3, to: Vec3, alpha: f32) -> (f32, f32) {
     let half = unit(from + to);
     let d = distribution(half, alpha);
     let (hidden_from, hidden_to) = (hidden(from.z, alpha), hidden(to.z, alpha));
@@ -105,8 +108,8 @@ impl RoughMetal {
             color,
             alpha,
             from,
-            albedo: look_up(table, from.z, alpha),
-            mean: mean_albedo(table, alpha),
+            albedo: Shares::towards(table, from.z, alpha).all,
+            mean: Shares::mean(table, alpha).all,
         }
     }
 
@@ -120,7 +123,7 @@ impl RoughMetal {
         let half = unit(self.from + to);
         let (value, density) = single_bounce(self.from, to, self.alpha);
         let first = schlick(self.color, half.dot(to)) * value;
-        let left = (1.0 - self.albedo) * (1.0 - look_up(table, to.z, self.alpha));
+        let left = (1.0 - self.albedo) * (1.0 - Shares::towards(table, to.z, self.alpha).all);
         let others = left / (1.0 - self.mean).max(1e-6) * FRAC_1_PI * to.z;
         // The mean of Schlick's curve; what bounces n times is coloured n times.
         let fresnel = (self.color * 20.0 + Vec3::ONE) * (1.0 / 21.0);
@@ -145,21 +148,70 @@ impl RoughMetal {
     }
 }
 
-/// E, between the entries of the table.
-#[inline]
-fn look_up(table: &[f32], cosine: f32, alpha: f32) -> f32 {
-    if table.len() < ALBEDO_LEN {
-        return 1.0;
+/// The shares of light that the first bounce returns.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shares {
+    /// Where the reflectance is one: E of a white metal.
+    pub all: f32,
+    /// Where it is (1 − cos)⁵, cos between the light and the tiny mirror's normal.
+    pub grazing: f32,
+}
+
+impl Shares {
+    /// All light: what there is without a table.
+    const ALL: Self = Self {
+        all: 1.0,
+        grazing: 0.0,
+    };
+
+    /// Towards a direction, between the entries of the table; all light without a table.
+    #[inline]
+    #[must_use]
+    pub fn towards(table: &[f32], cosine: f32, alpha: f32) -> Self {
+        if table.len() < ALBEDO_LEN {
+            return Self::ALL;
+        }
+        let last = (ALBEDO_SIDE - 1) as f32;
+        let x = (cosine * last).clamp(0.0, last);
+        let y = (alpha * last).clamp(0.0, last);
+        Self {
+            all: between(table, 0, x, y),
+            grazing: between(table, SHARE_LEN, x, y),
+        }
     }
-    let last = (ALBEDO_SIDE - 1) as f32;
-    let x = (cosine * last).clamp(0.0, last);
-    let y = (alpha * last).clamp(0.0, last);
+
+    /// The mean over the cosine-weighted hemisphere; all light without a table.
+    #[inline]
+    #[must_use]
+    pub fn mean(table: &[f32], alpha: f32) -> Self {
+        if table.len() < ALBEDO_LEN {
+            return Self::ALL;
+        }
+        let last = (ALBEDO_SIDE - 1) as f32;
+        let y = (alpha * last).clamp(0.0, last);
+        Self {
+            all: mean_between(table, 0, y),
+            grazing: mean_between(table, SHARE_LEN, y),
+        }
+    }
+
+    /// The share that a boundary of this reflectance straight on returns, by Schlick's curve.
+    #[inline]
+    #[must_use]
+    pub fn of(self, straight_on: f32) -> f32 {
+        straight_on * (self.all - self.grazing) + self.grazing
+    }
+}
+
+/// Between the entries of the share that begins at `first`, in columns and rows.
+#[inline]
+fn between(table: &[f32], first: usize, x: f32, y: f32) -> f32 {
     let (x0, y0) = (
         (x as usize).min(ALBEDO_SIDE - 2),
         (y as usize).min(ALBEDO_SIDE - 2),
     );
     let (x1, y1) = (x - x0 as f32, y - y0 as f32);
-    let at = y0 * ALBEDO_SIDE + x0;
+    let at = first + y0 * ALBEDO_SIDE + x0;
     let (a, b) = (read(table, at), read(table, at + 1));
     let (c, d) = (
         read(table, at + ALBEDO_SIDE),
@@ -169,16 +221,11 @@ fn look_up(table: &[f32], cosine: f32, alpha: f32) -> f32 {
     low + (c + (d - c) * x1 - low) * y1
 }
 
-/// The mean of E over the cosine-weighted hemisphere.
+/// Between the means of the share that begins at `first`, in rows.
 #[inline]
-fn mean_albedo(table: &[f32], alpha: f32) -> f32 {
-    if table.len() < ALBEDO_LEN {
-        return 1.0;
-    }
-    let last = (ALBEDO_SIDE - 1) as f32;
-    let y = (alpha * last).clamp(0.0, last);
+fn mean_between(table: &[f32], first: usize, y: f32) -> f32 {
     let y0 = (y as usize).min(ALBEDO_SIDE - 2);
-    let at = ALBEDO_SIDE * ALBEDO_SIDE + y0;
+    let at = first + ALBEDO_SIDE * ALBEDO_SIDE + y0;
     let (a, b) = (read(table, at), read(table, at + 1));
     a + (b - a) * (y - y0 as f32)
 }
@@ -188,47 +235,40 @@ fn mean_albedo(table: &[f32], alpha: f32) -> f32 {
 mod albedo {
     use glam::{Vec2, Vec3};
 
-    use super::{ALBEDO_LEN, ALBEDO_SIDE, hidden, sample_visible};
+    use super::{ALBEDO_LEN, ALBEDO_SIDE, SHARE_LEN, Shares, hidden, sample_visible, schlick};
 
-    /// The share of light that the first bounce on a rough white metal returns.
+    /// What the first bounce on a rough surface returns.
     #[derive(Clone, Copy, Debug)]
     pub struct Albedo;
 
     impl Albedo {
-        /// The table that [`super::RoughMetal`] looks into, [`ALBEDO_LEN`] long.
+        /// The table that [`Shares`] are read from, [`ALBEDO_LEN`] long.
         #[must_use]
         pub fn table() -> [f32; ALBEDO_LEN] {
             let mut table = [0.0; ALBEDO_LEN];
             let at = |index: usize| index as f32 / (ALBEDO_SIDE - 1) as f32;
             for row in 0..ALBEDO_SIDE {
                 for column in 0..ALBEDO_SIDE {
-                    table[row * ALBEDO_SIDE + column] = Self::of(at(column), at(row));
+                    let Shares { all, grazing } = Self::of(at(column), at(row));
+                    table[row * ALBEDO_SIDE + column] = all;
+                    table[SHARE_LEN + row * ALBEDO_SIDE + column] = grazing;
                 }
-                // ∫ 2 E(μ) μ dμ, exact for the straight lines between the entries.
-                let step = 1.0 / (ALBEDO_SIDE - 1) as f64;
-                let mean: f64 = (0..ALBEDO_SIDE - 1)
-                    .map(|column| {
-                        let (low, high) = (
-                            f64::from(table[row * ALBEDO_SIDE + column]),
-                            f64::from(table[row * ALBEDO_SIDE + column + 1]),
-                        );
-                        let x = column as f64 * step;
-                        2.0 * step * (low * (x / 2.0 + step / 6.0) + high * (x / 2.0 + step / 3.0))
-                    })
-                    .sum();
-                table[ALBEDO_SIDE * ALBEDO_SIDE + row] = mean as f32;
             }
+            let (all, grazing) = table.split_at_mut(SHARE_LEN);
+            put_means(all);
+            put_means(grazing);
             table
         }
 
-        /// E for one direction and one α, as the mean of G₂/G₁ over a grid of visible normals.
+        /// Both shares for one direction and one α, as means of G₂/G₁ over a grid of visible
+        /// normals.
         #[must_use]
-        pub fn of(cosine: f32, alpha: f32) -> f32 {
+        pub fn of(cosine: f32, alpha: f32) -> Shares {
             const SIDE: u16 = 48;
             let z = cosine.clamp(1e-4, 1.0);
             let alpha = alpha.max(super::SMOOTHEST);
             let from = Vec3::new((1.0 - z * z).sqrt(), 0.0, z);
-            let mut sum = 0.0;
+            let (mut all, mut grazing) = (0.0, 0.0);
             for i in 0..SIDE {
                 for j in 0..SIDE {
                     let middle = |k: u16| (f32::from(k) + 0.5) / f32::from(SIDE);
@@ -236,11 +276,36 @@ mod albedo {
                     let to = normal * (2.0 * from.dot(normal)) - from;
                     if to.z > 0.0 {
                         let (a, b) = (hidden(from.z, alpha), hidden(to.z, alpha));
-                        sum += f64::from((1.0 + a) / (1.0 + a + b));
+                        let share = f64::from((1.0 + a) / (1.0 + a + b));
+                        all += share;
+                        grazing += share * f64::from(schlick(Vec3::ZERO, normal.dot(to)).x);
                     }
                 }
             }
-            (sum / f64::from(SIDE).powi(2)) as f32
+            let samples = f64::from(SIDE).powi(2);
+            Shares {
+                all: (all / samples) as f32,
+                grazing: (grazing / samples) as f32,
+            }
+        }
+    }
+
+    /// Puts the mean of each row behind the rows: ∫ 2 E(μ) μ dμ, exact for the straight lines
+    /// between the entries.
+    fn put_means(share: &mut [f32]) {
+        let step = 1.0 / (ALBEDO_SIDE - 1) as f64;
+        for row in 0..ALBEDO_SIDE {
+            let mean: f64 = (0..ALBEDO_SIDE - 1)
+                .map(|column| {
+                    let (low, high) = (
+                        f64::from(share[row * ALBEDO_SIDE + column]),
+                        f64::from(share[row * ALBEDO_SIDE + column + 1]),
+                    );
+                    let x = column as f64 * step;
+                    2.0 * step * (low * (x / 2.0 + step / 6.0) + high * (x / 2.0 + step / 3.0))
+                })
+                .sum();
+            share[ALBEDO_SIDE * ALBEDO_SIDE + row] = mean as f32;
         }
     }
 }
@@ -249,18 +314,18 @@ mod albedo {
 pub use albedo::Albedo;
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
 
     const ALPHAS: [f32; 4] = [0.05, 0.2, 0.5, 1.0];
 
-    fn direction(cosine: f32, angle: f32) -> Vec3 {
+    pub fn direction(cosine: f32, angle: f32) -> Vec3 {
         let sine = (1.0 - cosine * cosine).sqrt();
         Vec3::new(sine * angle.cos(), sine * angle.sin(), cosine)
     }
 
     /// The integral over the upper hemisphere, on a grid that is fine where a lobe may be.
-    fn integrate(f: impl Fn(Vec3) -> f64) -> f64 {
+    pub fn integrate(f: impl Fn(Vec3) -> f64) -> f64 {
         const ROWS: u32 = 600;
         const COLUMNS: u32 = 600;
         let mut sum = 0.0;

@@ -2,6 +2,7 @@
 
 pub mod microfacet;
 pub mod optics;
+pub mod plastic;
 
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
@@ -14,14 +15,14 @@ use crate::arithmetic::elements::read;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Material {
-    /// Diffuse: the reflectance; metal: the reflectance seen straight on; linear Rec. 709, each
+    /// Diffuse: the reflectance; metal: the reflectance seen straight on; plastic: the reflectance of the base; linear Rec. 709, each
     /// channel between 0 and 1.
     pub color: Vec3,
     /// One of the constants.
     pub kind: u32,
-    /// Emissive: the radiance. Glass: what it absorbs per scene unit.
+    /// Emissive: the radiance. Glass: what it absorbs per scene unit. Plastic: the refractive index of the coat, three times.
     pub volume: Vec3,
-    /// Metal: GGX's α. Glass: the refractive index inside over that outside.
+    /// Metal, plastic: GGX's α. Glass: the refractive index inside over that outside.
     pub parameter: f32,
 }
 
@@ -36,6 +37,8 @@ impl Material {
     pub const BUBBLE: u32 = 3;
     /// Glows, the same in all directions, and reflects nothing.
     pub const EMISSIVE: u32 = 4;
+    /// A diffuse base under a clear coat.
+    pub const PLASTIC: u32 = 5;
 
     /// A diffuse material of this reflectance.
     #[must_use]
@@ -79,6 +82,18 @@ impl Material {
             kind: Self::BUBBLE,
             volume: absorption,
             parameter: 1.0 / index,
+        }
+    }
+
+    /// Plastic: a diffuse base of this reflectance under a clear coat of this refractive index, with a roughness from 0, polished,
+    /// to 1; α is the square of the roughness.
+    #[must_use]
+    pub const fn plastic(color: Vec3, roughness: f32, index: f32) -> Self {
+        Self {
+            color,
+            kind: Self::PLASTIC,
+            volume: Vec3::splat(index),
+            parameter: roughness * roughness,
         }
     }
 

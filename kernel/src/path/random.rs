@@ -17,7 +17,72 @@ pub struct Sampler {
     sample: u32,
 }
 
+/// The dimensions of random numbers that the camera takes, and that each vertex takes.
+const OF_CAMERA: u32 = 3;
+const OF_VERTEX: u32 = 8;
+
+/// The random numbers of one vertex of a path. The sampler is copied, because GPUs know no struct of pointers.
+#[derive(Clone, Copy, Debug)]
+pub struct VertexNumbers {
+    sampler: Sampler,
+    first: u32,
+}
+
+impl VertexNumbers {
+    /// For the direction in which the path goes on.
+    #[inline]
+    #[must_use]
+    pub fn direction(&self) -> Vec2 {
+        self.sampler.pair(self.first)
+    }
+
+    /// For a direction towards a light.
+    #[inline]
+    #[must_use]
+    pub fn towards_light(&self) -> Vec2 {
+        self.sampler.pair(self.first + 1)
+    }
+
+    /// For which light is looked for.
+    #[inline]
+    #[must_use]
+    pub fn which_light(&self) -> f32 {
+        self.sampler.single(self.first + 2)
+    }
+
+    /// For a choice between two ways to go on.
+    #[inline]
+    #[must_use]
+    pub fn choice(&self) -> f32 {
+        self.sampler.single(self.first + 3)
+    }
+
+    /// For how far the path goes in fog.
+    #[inline]
+    #[must_use]
+    pub fn way(&self) -> f32 {
+        self.sampler.single(self.first + 4)
+    }
+
+    /// For whether the path goes on at all.
+    #[inline]
+    #[must_use]
+    pub fn roulette(&self) -> f32 {
+        self.sampler.single(self.first + 6)
+    }
+}
+
 impl Sampler {
+    /// The numbers of a path's vertex, counted from zero.
+    #[inline]
+    #[must_use]
+    pub fn at_vertex(&self, index: u32) -> VertexNumbers {
+        VertexNumbers {
+            sampler: *self,
+            first: OF_CAMERA.wrapping_add(OF_VERTEX.wrapping_mul(index)),
+        }
+    }
+
     /// The numbers of this sample of this pixel of the whole image.
     #[inline]
     #[must_use]

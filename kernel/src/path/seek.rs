@@ -7,7 +7,7 @@ use spirv_std::num_traits::Float as _;
 
 use super::glass::absorb;
 use super::light_path::Path;
-use super::random::Sampler;
+use super::random::VertexNumbers;
 use super::sampling::{cone, cone_density, power_heuristic};
 use super::scenery::Scenery;
 use super::vertex::{LAMBERT, Vertex};
@@ -46,10 +46,9 @@ pub(super) fn light_from_seeking<T: Traversal>(
     surface: &Surface,
     vertex: &Vertex,
     continues: bool,
-    sampler: &Sampler,
-    dimension: u32,
+    numbers: &VertexNumbers,
 ) -> Vec3 {
-    let lamp = light::choose(scenery.lights, sampler.single(dimension + 2));
+    let lamp = light::choose(scenery.lights, numbers.which_light());
     if scenery.effects.any(Effects::AMBIENT_OCCLUSION)
         && (vertex.lobe == LAMBERT) & (lamp.kind == Light::ENVIRONMENT)
     {
@@ -61,7 +60,7 @@ pub(super) fn light_from_seeking<T: Traversal>(
         &lamp,
         surface.point,
         path.time,
-        sampler.pair(dimension + 1),
+        numbers.towards_light(),
     );
     let (value, density) = vertex.evaluate(scenery, found.direction);
     let light = value * found.radiance;

@@ -3,21 +3,23 @@
 //! A thread works through its samples in one loop: where a path has ended the next begins, so that
 //! neighbours whose paths are longer do not wait.
 
+use core::f32::consts::PI;
+
 use glam::{UVec2, Vec2, Vec3};
 
 use super::arrive::{arrive_at_lamp, arrive_at_sky};
 use super::glass::{absorb, cross_glass};
 use super::light_path::{Path, survives};
-use super::random::Sampler;
-use super::sampling::{cosine_hemisphere, disc, tangents};
+use super::random::{Sampler, VertexNumbers};
+use super::sampling::{cosine_hemisphere, disc};
 use super::scenery::Scenery;
 use super::seek::{ambient_light, light_from_seeking};
-use super::vertex::{LAMBERT, METAL, PHASE, Vertex};
+use super::vertex::{LAMBERT, METAL, PHASE, PLASTIC, Vertex};
 use crate::accel::traversal::Traversal;
 use crate::effects::Effects;
 use crate::film::Accumulator;
 use crate::hit::Hit;
-use crate::material::microfacet::{RoughMetal, SMOOTHEST, schlick};
+use crate::material::microfacet::{SMOOTHEST, schlick};
 use crate::material::optics::reflect;
 use crate::material::{Material, material_of};
 use crate::ray::Ray;
@@ -26,6 +28,7 @@ use crate::surface::{Surface, unit};
 /// Effects for which light paths are longer than their first vertex.
 const BOUNCING: Effects = Effects::MIRROR
     .and(Effects::ROUGH_METAL)
+    .and(Effects::PLASTIC)
     .and(Effects::GLASS)
     .and(Effects::INTERREFLECTION)
     .and(Effects::FOG);
@@ -33,10 +36,6 @@ const BOUNCING: Effects = Effects::MIRROR
 const SEEKING: Effects = Effects::HARD_SHADOWS
     .and(Effects::SOFT_SHADOWS)
     .and(Effects::ENVIRONMENT);
-
-/// The dimensions of random numbers that the camera takes, and that each vertex takes.
-const OF_CAMERA: u32 = 3;
-const OF_VERTEX: u32 = 8;
 
 /// Adds the launch's samples of one pixel to what it holds. `pixel` counts from the upper left of
 /// the tile.
@@ -107,131 +106,176 @@ fn start<T: Traversal>(scenery: &Scenery<'_, T>, pixel: UVec2, sampler: &Sampler
     }
 }
 
-/// Takes a path to its next vertex and away from it; false where it ends.
+/// Where a path is: on a surface, or in fog. In this order, because naga takes a surface to fill 32 bytes.
+#[repr(C)]
+struct Place {
+    material: Material,
+    surface: Surface,
+}
+
+/// What comes of a path at a place: one of these, or it is scattered by the lobe of this value.
+const ENDS: u32 = u32::MAX;
+/// It has left for the next place.
+const LEAVES: u32 = u32::MAX - 1;
+
+/// Takes a path to its next place and away from it; false where it ends.
 #[inline]
 fn step<T: Traversal>(scenery: &Scenery<'_, T>, path: &mut Path, sampler: &Sampler) -> bool {
     let (effects, launch) = (scenery.effects, scenery.launch);
-    let dimension = OF_CAMERA + OF_VERTEX * path.bounces;
+    let numbers = sampler.at_vertex(path.bounces);
     let ray = Ray::within(path.origin, path.direction, f32::MIN_POSITIVE, Hit::NONE_T);
     let hit = scenery.nearest_hit(&ray, path.time);
     let continues = effects.any(BOUNCING) & (path.bounces < launch.max_bounces);
 
-    let mut surface = Surface {
-        point: Vec3::ZERO,
-        normal: Vec3::ZERO,
-        error: 0.0,
+    let mut place = Place {
+        material: Material::diffuse(Vec3::ONE),
+        surface: Surface {
+            point: Vec3::ZERO,
+            normal: Vec3::ZERO,
+            error: 0.0,
+        },
     };
-    let mut material = Material::diffuse(Vec3::ONE);
-    let mut lobe = LAMBERT;
-    if effects.any(Effects::FOG) {
-        let (from, to) = launch.fog.span(path.origin, path.direction, hit.t);
-        let at = from + launch.fog.sample_distance(sampler.single(dimension + 4));
-        if (from < to) & (at < to) {
-            lobe = PHASE;
-            surface.point = ray.at(at);
-            if effects.any(Effects::GLASS) {
-                path.throughput *= absorb(path.absorption, at);
-            }
-            path.throughput *= launch.fog.albedo;
-        }
+    let mut event = LAMBERT;
+    if effects.any(Effects::FOG) && meet_fog(scenery, path, &ray, hit, numbers.way(), &mut place) {
+        event = PHASE;
     }
-    if lobe != PHASE {
-        if !hit.is_some() {
-            arrive_at_sky(scenery, path);
-            return false;
-        }
-        if effects.any(Effects::GLASS) {
-            path.throughput *= absorb(path.absorption, hit.t);
-        }
-        let index = hit.sphere as usize;
-        let sphere = scenery.sphere(index, path.time);
-        surface = Surface::at(&ray, hit.t, sphere);
-        material = material_of(index, scenery.material_ids, scenery.materials);
-        if path.bounces == 0 {
-            path.depth = hit.t;
-        }
-        if effects.any(Effects::EMISSION) && material.kind == Material::EMISSIVE {
-            arrive_at_lamp(scenery, path, sphere, material.volume);
-            return false;
-        }
-        if effects.any(Effects::GLASS)
-            && (material.kind == Material::GLASS) | (material.kind == Material::BUBBLE)
-        {
-            if continues {
-                cross_glass(path, &surface, &material, sampler.single(dimension + 3));
-            }
-            return continues && survives(path, sampler.single(dimension + 6));
-        }
+    if event != PHASE {
+        event = meet_surface(scenery, path, &ray, hit, continues, &numbers, &mut place);
     }
+    if event == ENDS {
+        return false;
+    }
+    if event != LEAVES && !scatter(scenery, path, &place, event, continues, &numbers) {
+        return false;
+    }
+    survives(path, numbers.roulette())
+}
 
-    let facing = if surface.normal.dot(path.direction) > 0.0 {
-        -surface.normal
-    } else {
-        surface.normal
-    };
-    if effects.any(Effects::MIRROR.and(Effects::ROUGH_METAL))
-        && lobe != PHASE
-        && material.kind == Material::METAL
+/// Stops a path in the fog, by chance: `u` says how far it goes there. Returns whether it does.
+#[inline]
+fn meet_fog<T: Traversal>(
+    scenery: &Scenery<'_, T>,
+    path: &mut Path,
+    ray: &Ray,
+    hit: Hit,
+    u: f32,
+    place: &mut Place,
+) -> bool {
+    let (effects, fog) = (scenery.effects, &scenery.launch.fog);
+    let (from, to) = fog.span(path.origin, path.direction, hit.t);
+    let at = from + fog.sample_distance(u);
+    let is_in_fog = (from < to) & (at < to);
+    if is_in_fog {
+        place.surface.point = ray.at(at);
+        if effects.any(Effects::GLASS) {
+            path.throughput *= absorb(path.absorption, at);
+        }
+        path.throughput *= fog.albedo;
+    }
+    is_in_fog
+}
+
+/// Takes a path to what its ray has hit, and through glass or away from a mirror; where it meets light, or nothing, it ends.
+#[inline]
+fn meet_surface<T: Traversal>(
+    scenery: &Scenery<'_, T>,
+    path: &mut Path,
+    ray: &Ray,
+    hit: Hit,
+    continues: bool,
+    numbers: &VertexNumbers,
+    place: &mut Place,
+) -> u32 {
+    let effects = scenery.effects;
+    if !hit.is_some() {
+        arrive_at_sky(scenery, path);
+        return ENDS;
+    }
+    if effects.any(Effects::GLASS) {
+        path.throughput *= absorb(path.absorption, hit.t);
+    }
+    let index = hit.sphere as usize;
+    let sphere = scenery.sphere(index, path.time);
+    let surface = Surface::at(ray, hit.t, sphere);
+    let material = material_of(index, scenery.material_ids, scenery.materials);
+    place.surface = surface;
+    place.material = material;
+    if path.bounces == 0 {
+        path.depth = hit.t;
+    }
+    if effects.any(Effects::EMISSION) && material.kind == Material::EMISSIVE {
+        arrive_at_lamp(scenery, path, sphere, material.volume);
+        return ENDS;
+    }
+    if effects.any(Effects::GLASS)
+        && (material.kind == Material::GLASS) | (material.kind == Material::BUBBLE)
     {
+        if continues {
+            cross_glass(path, &surface, &material, numbers.choice());
+            return LEAVES;
+        }
+        return ENDS;
+    }
+    if effects.any(Effects::MIRROR.and(Effects::ROUGH_METAL)) && material.kind == Material::METAL {
         let is_smooth = material.parameter < SMOOTHEST;
         if effects.any(Effects::MIRROR) && (is_smooth | !effects.any(Effects::ROUGH_METAL)) {
             if continues {
-                let cosine = -facing.dot(path.direction);
-                path.throughput *= schlick(material.color, cosine);
+                let facing = surface.facing(path.direction);
+                path.throughput *= schlick(material.color, -facing.dot(path.direction));
                 let direction = unit(reflect(path.direction, facing));
                 path.leave(&surface, direction, 0.0);
+                return LEAVES;
             }
-            return continues && survives(path, sampler.single(dimension + 6));
+            return ENDS;
         }
-        lobe = METAL;
+        return METAL;
     }
+    if effects.any(Effects::PLASTIC) && material.kind == Material::PLASTIC {
+        return PLASTIC;
+    }
+    LAMBERT
+}
 
+/// Looks for light at a place that scatters by this lobe, and sends the path off in a random direction; false where it ends.
+#[inline]
+fn scatter<T: Traversal>(
+    scenery: &Scenery<'_, T>,
+    path: &mut Path,
+    place: &Place,
+    lobe: u32,
+    continues: bool,
+    numbers: &VertexNumbers,
+) -> bool {
+    let effects = scenery.effects;
+    let Place { surface, material } = place;
+    let facing = surface.facing(path.direction);
     if effects.any(Effects::HEADLAMP) && lobe == LAMBERT {
         // Lambert with the lamp where the path comes from.
         path.radiance += path.throughput * material.color * facing.dot(path.direction).abs();
         return false;
     }
-    let lobe_continues = continues & ((lobe != LAMBERT) | effects.any(Effects::INTERREFLECTION));
-
-    let (x, y) = tangents(facing);
-    let from = -Vec3::new(
-        x.dot(path.direction),
-        y.dot(path.direction),
-        facing.dot(path.direction),
-    );
-    let vertex = Vertex {
-        lobe,
-        incoming: path.direction,
-        facing,
-        x,
-        y,
-        color: material.color,
-        metal: RoughMetal::new(material.color, material.parameter, from, scenery.tables),
-    };
+    let continues = continues & ((lobe != LAMBERT) | effects.any(Effects::INTERREFLECTION));
+    let vertex = Vertex::new(scenery, lobe, path.direction, facing, material);
+    if effects.any(Effects::HEADLAMP) && effects.any(Effects::PLASTIC) && lobe == PLASTIC {
+        // As for Lambert, whose value is a πth; and the coat reflects what surrounds the scene.
+        let (value, _) = vertex.evaluate(scenery, -path.direction);
+        path.radiance += path.throughput * value * PI;
+    }
     let seeks = effects.any(SEEKING) && !scenery.lights.is_empty();
     if seeks {
-        let light = light_from_seeking(
-            scenery,
-            path,
-            &surface,
-            &vertex,
-            lobe_continues,
-            sampler,
-            dimension,
-        );
+        let light = light_from_seeking(scenery, path, surface, &vertex, continues, numbers);
         path.radiance += path.throughput * light;
     }
     if effects.any(Effects::AMBIENT_OCCLUSION) && lobe == LAMBERT {
-        let direction = cosine_hemisphere(facing, sampler.pair(dimension));
-        let light = ambient_light(scenery, path.time, &surface, direction);
+        let direction = cosine_hemisphere(facing, numbers.direction());
+        let light = ambient_light(scenery, path.time, surface, direction);
         path.radiance += path.throughput * material.color * light;
         return false;
     }
-    if !lobe_continues {
+    if !continues {
         return false;
     }
-    let choice = sampler.single(dimension + 3);
-    let direction = vertex.sample(scenery, sampler.pair(dimension), choice);
+    let direction = vertex.sample(scenery, numbers.direction(), numbers.choice());
     let (value, density) = vertex.evaluate(scenery, direction);
     // Asked this way, so that a NaN ends the path.
     let is_possible = density > 0.0;
@@ -239,6 +283,6 @@ fn step<T: Traversal>(scenery: &Scenery<'_, T>, path: &mut Path, sampler: &Sampl
         return false;
     }
     path.throughput *= value / density;
-    path.leave(&surface, direction, if seeks { density } else { 0.0 });
-    survives(path, sampler.single(dimension + 6))
+    path.leave(surface, direction, if seeks { density } else { 0.0 });
+    true
 }

@@ -1,18 +1,21 @@
-//! Where a path is scattered: by a diffuse surface, by rough metal, or by fog. Runs on the GPU and on the CPU.
+//! Where a path is scattered: by a diffuse surface, by rough metal, by plastic, or by fog. Runs on the GPU and on the CPU.
 
 use glam::{Vec2, Vec3};
 
-use super::sampling::{cosine_density, cosine_hemisphere};
+use super::sampling::{cosine_density, cosine_hemisphere, tangents};
 use super::scenery::Scenery;
 use crate::accel::traversal::Traversal;
 use crate::effects::Effects;
+use crate::material::Material;
 use crate::material::microfacet::RoughMetal;
+use crate::material::plastic::Plastic;
 use crate::surface::unit;
 
 /// How a vertex scatters.
 pub(super) const LAMBERT: u32 = 0;
 pub(super) const METAL: u32 = 1;
 pub(super) const PHASE: u32 = 2;
+pub(super) const PLASTIC: u32 = 3;
 
 /// Where a path is scattered, other than at a mirror or at glass.
 pub(super) struct Vertex {
@@ -26,9 +29,39 @@ pub(super) struct Vertex {
     pub(super) y: Vec3,
     pub(super) color: Vec3,
     pub(super) metal: RoughMetal,
+    pub(super) plastic: Plastic,
 }
 
 impl Vertex {
+    /// Of this lobe, on a surface of this material whose normal on the side of the path is
+    /// `facing`; `incoming` is the direction that the path comes along.
+    #[inline]
+    pub(super) fn new<T: Traversal>(
+        scenery: &Scenery<'_, T>,
+        lobe: u32,
+        incoming: Vec3,
+        facing: Vec3,
+        material: &Material,
+    ) -> Self {
+        let (x, y) = tangents(facing);
+        let from = -Vec3::new(x.dot(incoming), y.dot(incoming), facing.dot(incoming));
+        let (color, alpha, tables) = (material.color, material.parameter, scenery.tables);
+        Self {
+            lobe,
+            incoming,
+            facing,
+            x,
+            y,
+            color,
+            metal: RoughMetal::new(color, alpha, from, tables),
+            plastic: if scenery.effects.any(Effects::PLASTIC) && lobe == PLASTIC {
+                Plastic::new(color, material.volume.x, alpha, from, tables)
+            } else {
+                Plastic::NONE
+            },
+        }
+    }
+
     /// How much light is scattered from `to` into the path, times the cosine at a surface; and the
     /// density with which [`Vertex::sample`] chooses `to`.
     #[inline]
@@ -38,8 +71,9 @@ impl Vertex {
             let phase = scenery.launch.fog.phase(self.incoming.dot(to));
             (Vec3::splat(phase), phase)
         } else if effects.any(Effects::ROUGH_METAL) && self.lobe == METAL {
-            let local = Vec3::new(self.x.dot(to), self.y.dot(to), self.facing.dot(to));
-            self.metal.evaluate(local, scenery.tables)
+            self.metal.evaluate(self.local(to), scenery.tables)
+        } else if effects.any(Effects::PLASTIC) && self.lobe == PLASTIC {
+            self.plastic.evaluate(self.local(to), scenery.tables)
         } else {
             let density = cosine_density(self.facing.dot(to));
             (self.color * density, density)
@@ -58,10 +92,23 @@ impl Vertex {
         if effects.any(Effects::FOG) && self.lobe == PHASE {
             scenery.launch.fog.sample(self.incoming, u)
         } else if effects.any(Effects::ROUGH_METAL) && self.lobe == METAL {
-            let to = self.metal.sample(u, choice);
-            unit(self.x * to.x + self.y * to.y + self.facing * to.z)
+            self.global(self.metal.sample(u, choice))
+        } else if effects.any(Effects::PLASTIC) && self.lobe == PLASTIC {
+            self.global(self.plastic.sample(u, choice))
         } else {
             cosine_hemisphere(self.facing, u)
         }
+    }
+
+    /// A direction in the frame of the surface.
+    #[inline]
+    fn local(&self, to: Vec3) -> Vec3 {
+        Vec3::new(self.x.dot(to), self.y.dot(to), self.facing.dot(to))
+    }
+
+    /// A direction in the frame of the surface as the scene has it.
+    #[inline]
+    fn global(&self, to: Vec3) -> Vec3 {
+        unit(self.x * to.x + self.y * to.y + self.facing * to.z)
     }
 }
