@@ -63,7 +63,7 @@ pub use settings::{EffectChoice, Progress, QUIET, Settings};
 ///
 /// # Errors
 ///
-/// [`Error::Scene`] as [`Scene::validate`] has it, and the device's errors.
+/// [`Error::Scene`](crate::Error::Scene) as [`Scene::validate`] has it, and the device's errors.
 pub fn render(
     scene: &Scene,
     settings: impl Into<Settings>,

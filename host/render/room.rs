@@ -18,7 +18,7 @@ const BYTES_A_TEXEL: u64 = 64;
 ///
 /// # Errors
 ///
-/// [`Error::OutOfHostMemory`] with the sum.
+/// [`OutOfHostMemory`](crate::Error::OutOfHostMemory) with the sum.
 pub(super) fn memory_for(scene: &Scene, bytes_a_pixel: u64) -> Result<()> {
     let pixels = u64::from(scene.width) * u64::from(scene.height);
     let spheres = scene.world.spheres.len() as u64;

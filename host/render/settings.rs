@@ -20,7 +20,7 @@ pub struct Settings {
     pub effects: EffectChoice,
     /// Stops after this time of tracing, give or take a launch on a GPU.
     pub time_limit: Option<Duration>,
-    /// Stops taking samples when [`Reached::noise`](paths::Reached::noise) is as low as this.
+    /// Stops taking samples when [`Reached::noise`](super::paths::Reached::noise) is as low as this.
     pub noise: Option<f64>,
 }
 
@@ -78,7 +78,7 @@ impl EffectChoice {
 /// Told how far a render is, a number from 0 to 1, and asked whether it goes on.
 ///
 /// It is called from any thread, every few milliseconds of each on a CPU and after each launch on a GPU, and so must be quick. Where it
-/// breaks off, the render ends with what it has: see [`Rendered::is_complete`].
+/// breaks off, the render ends with what it has: see [`is_complete`](super::Rendered::is_complete).
 pub type Progress<'a> = &'a (dyn Fn(f64) -> ControlFlow<()> + Sync);
 
 /// Ignores progress, and always goes on.

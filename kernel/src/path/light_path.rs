@@ -21,7 +21,7 @@ pub(super) struct Path {
     pub(super) bounces: u32,
     /// Zero for a path that saw nothing but the background.
     pub(super) alpha: f32,
-    /// The distance to the first sphere, [`Hit::NONE_T`] if there was none.
+    /// The distance to the first sphere, [`Hit::NONE_T`](crate::Hit::NONE_T) if there was none.
     pub(super) depth: f32,
 }
 
