@@ -138,8 +138,8 @@ pub struct PathLaunch {
 pub struct Accumulator {
     /// The sums of radiance and of alpha.
     pub(crate) color_alpha: Vec4,
-    /// Of the luminance, the sum of squared differences from its mean; the number of samples; the depth of the first; the mean
-    /// luminance.
+    /// Of the luminance, the sum of squared differences from its mean; the number of samples; the
+    /// depth of the first; the mean luminance.
     pub(crate) statistics: Vec4,
 }
 
@@ -147,15 +147,14 @@ impl Accumulator {
     /// The largest channel of a sample's radiance: of 2¹⁶ squares of it the sum is still a float.
     pub const BRIGHTEST: f32 = (1_u64 << 55) as f32;
 
-    /// Adds a sample: its radiance, whether it saw anything but the background, and how far away
-    /// that was.
+    /// Adds a sample: its radiance, its opacity, and the distance to the first sphere.
     ///
-    /// The variance is kept as B. P. Welford does, Note on a method for calculating corrected sums of squares and
-    /// products, Technometrics 4 (1962): no difference of large sums, which in 32-bit floats would be their roundings where light
-    /// is bright and steady.
+    /// The variance is kept as B. P. Welford does, Note on a method for calculating corrected sums
+    /// of squares and products, Technometrics 4 (1962): without differences of large sums, which
+    /// in 32-bit floats are all rounding if light is bright and steady.
     ///
-    /// What is brighter than [`Accumulator::BRIGHTEST`] counts as that, and what is no number as dark: one sample does not take
-    /// away a pixel.
+    /// A channel above [`Accumulator::BRIGHTEST`] counts as that, and a NaN as zero: one sample does
+    /// not destroy a pixel.
     #[inline]
     pub fn add(&mut self, radiance: Vec3, alpha: f32, depth: f32) {
         let radiance = Vec3::new(
@@ -258,7 +257,8 @@ const _: () = {
 mod tests {
     use super::*;
 
-    /// Bright light that hardly varies: what a difference of sums of squares makes of it is all rounding.
+    /// Bright light that hardly varies: what a difference of sums of squares makes of it is all
+    /// rounding.
     #[test]
     fn the_variance_of_bright_and_steady_light_keeps_its_digits() {
         let mut pixel = Accumulator::default();

@@ -1,7 +1,7 @@
 //! From a pixel to its colour, with one ray a pixel. Runs on the GPU and on the CPU.
 //!
-//! Whoever finds the hit, a thread of a GPU, a workgroup or a packet on the CPU: the ray comes from [`Launch::ray`], and what the
-//! pixel holds from [`Launch::pixel`].
+//! A thread of a GPU, a workgroup or a packet on the CPU finds the hit. All of them take the ray
+//! from [`Launch::ray`] and the pixel from [`Launch::pixel`].
 
 use glam::UVec2;
 
@@ -20,11 +20,11 @@ use crate::surface::Surface;
 /// Renders one pixel of a launch: `pixel` counts from the upper left of the tile, `previous` is
 /// what the pixel holds so far, `shading` and `rung` are values of
 /// [`Shading::to_u32`](crate::Shading::to_u32) and
-/// [`Rung::to_u32`](crate::precision::Rung::to_u32). Returns what the pixel must hold now.
+/// [`Rung::to_u32`](crate::precision::Rung::to_u32). Returns the pixel.
 ///
 /// With `has_tree` 1 the spheres are those of `tree`, whatever run of them the launch names.
-/// `spheres` and `material_ids` run in parallel; an index into `materials` that leaves the
-/// table takes its last entry.
+/// `spheres` and `material_ids` run in parallel; an index beyond `materials`
+/// selects its last entry.
 #[expect(
     clippy::too_many_arguments,
     reason = "these are the kernel's bindings, one each"
@@ -62,8 +62,9 @@ pub fn render_pixel(
 }
 
 impl Launch {
-    /// The ray through a pixel, which counts from the upper left of the tile and holds `previous`: not
-    /// farther than that. The first launch of a tile does not read it.
+    /// The ray through a pixel, which counts from the upper left of the tile. It ends at the depth
+    /// of
+    /// `previous`, which the first launch of a tile does not read.
     #[inline]
     #[must_use]
     pub fn ray(&self, pixel: UVec2, previous: &Pixel) -> Ray {
@@ -75,7 +76,8 @@ impl Launch {
         ray
     }
 
-    /// What a pixel that holds `previous` must hold if its ray hits nothing. The first launch of a tile does not read it.
+    /// The pixel for a ray that hits nothing: `previous`, or in the first launch of a tile, which
+    /// does not read that, a blank one.
     #[inline]
     #[must_use]
     pub fn unless_hit(&self, previous: &Pixel) -> Pixel {
@@ -93,7 +95,8 @@ impl Launch {
         Pixel::new(self.background, Hit::NONE_T)
     }
 
-    /// What a pixel must hold after its ray has found `hit`, and `otherwise` if it found none. In [`Shading::Id`](crate::Shading::Id)
+    /// What a pixel must hold after its ray has found `hit`, and `otherwise` if it found none. In
+    /// [`Shading::Id`](crate::Shading::Id)
     /// `material_ids` are those of the spheres themselves.
     #[expect(
         clippy::too_many_arguments,

@@ -7,7 +7,7 @@ use crate::material::Material;
 use crate::ray::Ray;
 use crate::surface::{Surface, unit};
 
-/// What the numbers of a pixel are, which decides how they are put into a file.
+/// The quantity that a pixel holds, which decides how image files hold it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantity {
     /// Linear light, with a background where nothing is hit.
@@ -23,7 +23,7 @@ pub enum Quantity {
 }
 
 impl Quantity {
-    /// Whether a pixel where nothing is hit shows the background, instead of being transparent.
+    /// Whether a pixel without a hit shows the background; if not, it is transparent.
     #[must_use]
     pub const fn has_background(self) -> bool {
         match self {
@@ -33,22 +33,23 @@ impl Quantity {
     }
 }
 
-/// A hit, as it is shown. Values, because naga takes no struct of pointers.
+/// A hit that is shown. It holds values, because naga takes no structs of pointers.
 #[derive(Clone, Copy, Debug)]
 pub struct Seen {
     /// The ray.
     pub ray: Ray,
-    /// What it found.
+    /// Its hit.
     pub hit: Hit,
-    /// The surface there.
+    /// The surface at the hit.
     pub surface: Surface,
-    /// What it is made of.
+    /// The material of the sphere.
     pub material: Material,
-    /// What the launch knows the sphere by: the index of its material, or in [`Shading::Id`] its own in the scene.
+    /// The index of the sphere's material; in [`Shading::Id`], the index of the sphere in the
+    /// scene.
     pub tag: u32,
 }
 
-/// Makes the enum, and what decides by it, of the list below.
+/// Makes the enum and its functions from the list below.
 macro_rules! shadings {
     ($($(#[$doc:meta])* $name:ident = $value:literal, $text:literal, $summary:literal, $quantity:ident, $show:ident;)*) => {
         /// What the image shows of a hit.
@@ -71,13 +72,13 @@ macro_rules! shadings {
                 match self { $(Self::$name => $text,)* }
             }
 
-            /// What it shows, in a few words.
+            /// A description of a few words.
             #[must_use]
             pub const fn summary(self) -> &'static str {
                 match self { $(Self::$name => $summary,)* }
             }
 
-            /// What the numbers of its pixels are.
+            /// The quantity that its pixels hold.
             #[must_use]
             pub const fn quantity(self) -> Quantity {
                 match self { $(Self::$name => Quantity::$quantity,)* }
@@ -90,7 +91,8 @@ macro_rules! shadings {
             }
         }
 
-        /// What a pixel holds of a hit in the mode `shading`, a value of [`Shading::to_u32`]; zeros for a value that is none.
+        /// The numbers of a pixel that shows this hit. `shading` is a value of [`Shading::to_u32`];
+        /// any other gives zeros.
         #[inline]
         #[must_use]
         pub fn shade(shading: u32, seen: Seen) -> Vec3 {
@@ -99,7 +101,8 @@ macro_rules! shadings {
     };
 }
 
-// Each mode: its number and name; what it shows; what its numbers are; and the function that makes them.
+// Each mode has its number and name, what it shows, the quantity, and the function that computes
+// it.
 shadings! {
     /// A lamp at the eye and Lambert's cosine law, with the colour of the sphere's material.
     #[default]
@@ -124,24 +127,26 @@ impl Shading {
         self as u32
     }
 
-    /// Whether the pixels are measurements rather than light: they go into an image file as they are, with no transfer curve.
+    /// Whether the pixels are measurements rather than light: image files hold them without a
+    /// transfer curve.
     #[must_use]
     pub const fn is_data(self) -> bool {
         !matches!(self.quantity(), Quantity::Light)
     }
 }
 
-/// Something that is compiled for each mode: see [`Shading::with`].
+/// Code that is compiled for each mode: see [`Shading::with`].
 #[cfg(not(target_arch = "spirv"))]
 pub trait OnShading {
-    /// What comes of it.
+    /// The result.
     type Output;
 
     /// Runs it for the mode with this value of [`Shading::to_u32`].
     fn run<const SHADING: u32>(self) -> Self::Output;
 }
 
-/// Lambert with the light where the eye is. The absolute value lights the inside of a sphere that the eye is in.
+/// Lambert's law with a lamp at the eye. The absolute value lights the inside of a sphere that the
+/// eye is in.
 #[inline]
 fn lit(seen: Seen) -> Vec3 {
     let cosine = seen.surface.normal.dot(unit(seen.ray.direction));

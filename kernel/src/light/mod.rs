@@ -1,4 +1,4 @@
-//! [`Light`]: what shines, and how a point looks for it. Runs on the GPU and on the CPU.
+//! [`Light`]: a light, and how it is sampled from a point. Runs on the GPU and on the CPU.
 //!
 //! Spheres of light are sampled by the solid angle that they fill: P. Shirley, C. Wang and K.
 //! Zimmerman, Monte Carlo techniques for direct lighting calculations, ACM Trans. Graph. 15 (1996).
@@ -17,13 +17,13 @@ use crate::arithmetic::elements::read;
 use crate::path::sampling::{cone, cone_density, uniform_sphere};
 use crate::sphere::Sphere;
 
-/// Something that is looked for as a light. One of them is chosen at a time, by its probability.
+/// A light that is sampled. One is chosen at a time, by its probability.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Light {
     /// A point's place; the unit vector towards the sun.
     pub position: Vec3,
-    /// One of the constants.
+    /// The kind, one of the constants.
     pub kind: u32,
     /// A point's radiant intensity, the sun's radiance or, if it has no extent, its irradiance, a
     /// sphere's radiance.
@@ -37,7 +37,7 @@ pub struct Light {
     /// One minus the cosine of the angle between the sun's middle and its edge; zero for a sun
     /// without extent.
     pub height: f32,
-    /// Nothing; it keeps what follows where the GPU's layout has it.
+    /// Padding for the layout on a GPU.
     pub padding: u32,
 }
 
@@ -96,8 +96,8 @@ impl Light {
     }
 }
 
-/// The light that `u` chooses: the first whose cumulative probability exceeds it. Of none, one that is
-/// never found.
+/// The light that `u` chooses: the first whose cumulative probability exceeds it. Without lights,
+/// one of probability zero.
 #[inline]
 #[must_use]
 pub(crate) fn choose(lights: &[Light], u: f32) -> Light {

@@ -24,11 +24,11 @@ use crate::material::microfacet::ALBEDO_LEN;
 pub struct Sky {
     /// The radiance at the horizon and below, or of the whole sky if it has no gradient.
     pub horizon: Vec3,
-    /// The probability that the environment is the light that is looked for.
+    /// The probability that the environment is the light that is sampled.
     pub environment_probability: f32,
     /// The radiance at the zenith.
     pub zenith: Vec3,
-    /// The probability that the sun is the light that is looked for.
+    /// The probability that the sun is the light that is sampled.
     pub sun_probability: f32,
     /// The unit vector towards the sun.
     pub sun_direction: Vec3,
@@ -36,11 +36,11 @@ pub struct Sky {
     pub sun_height: f32,
     /// The sun's radiance.
     pub sun_radiance: Vec3,
-    /// Nothing; it keeps what follows where the GPU's layout has it.
+    /// Padding for the layout on a GPU.
     pub padding: u32,
     /// Width and height of the image of the surroundings, in texels.
     pub environment_size: UVec2,
-    /// Nothing; it keeps what follows where the GPU's layout has it.
+    /// Padding for the layout on a GPU.
     pub padding_end: UVec2,
 }
 
@@ -88,8 +88,8 @@ impl Sky {
         ALBEDO_LEN + self.environment_size.y as usize
     }
 
-    /// Where a row's columns are, or with the number of rows what follows them. Sizes that no table has wrap, here and below,
-    /// and what is beyond the tables is not read.
+    /// The index of a row's first column; for the number of rows, the index behind them. Here and
+    /// below, impossible sizes wrap, and nothing beyond the tables is read.
     #[inline]
     fn columns_of(&self, row: u32) -> usize {
         let before = (row as usize).wrapping_mul(self.environment_size.x as usize);

@@ -8,7 +8,7 @@
 //! Light that meets two mirrors or more is not lost: C. Kulla and A. Conty's diffuse-like term
 //! (Revisiting Physically Based Shading at Imageworks, SIGGRAPH 2017) returns what the first
 //! bounce leaves, so that a white metal reflects all light, and the function stays reciprocal.
-//! It rests on a table of the share E that the first bounce returns, made by [`Albedo`].
+//! It uses a table of the share E that the first bounce returns: [`Shares`].
 //!
 //! Directions are in the frame of the surface: z is the normal's, and both directions leave.
 
@@ -26,14 +26,16 @@ use crate::surface::unit;
 /// Below this α a metal is a mirror: the distribution's peak would leave the range of floats.
 pub const SMOOTHEST: f32 = 1e-3;
 
-/// Entries along each side of the table of E.
+/// Entries along each side of the table of a share.
 pub const ALBEDO_SIDE: usize = 32;
-/// Floats of one share in the table: at (cos θ, α), row by row of one α, and then the mean for each α.
+/// Floats of one share in the table: its values at (cos θ, α), a row for each α, followed by the
+/// mean for each α.
 const SHARE_LEN: usize = ALBEDO_SIDE * ALBEDO_SIDE + ALBEDO_SIDE;
-/// Floats in the table: both of [`Shares`].
+/// Floats in the table, which holds both [`Shares`].
 pub const ALBEDO_LEN: usize = 2 * SHARE_LEN;
 
-/// Schlick's approximation of the reflectance of a metal whose colour seen straight on is `color`.
+/// Schlick's approximation of the reflectance of a metal whose colour at normal incidence is
+/// `color`.
 #[inline]
 #[must_use]
 pub fn schlick(color: Vec3, cosine: f32) -> Vec3 {
@@ -73,7 +75,7 @@ pub(super) fn single_bounce(from: Vec3, to: Vec3, alpha: f32) -> (f32, f32) {
     (value, density)
 }
 
-/// A normal among those that `from` sees.
+/// Samples a normal among those that are visible from `from`.
 #[inline]
 #[must_use]
 pub fn sample_visible(from: Vec3, alpha: f32, u: Vec2) -> Vec3 {
@@ -102,7 +104,7 @@ impl RoughMetal {
     #[inline]
     #[must_use]
     pub fn new(color: Vec3, alpha: f32, from: Vec3, table: &[f32]) -> Self {
-        // One that is smoother is left to the mirror, where there is one.
+        // Smoother metals are mirrors.
         let alpha = alpha.max(SMOOTHEST);
         Self {
             color,
@@ -125,7 +127,7 @@ impl RoughMetal {
         let first = schlick(self.color, half.dot(to)) * value;
         let left = (1.0 - self.albedo) * (1.0 - Shares::towards(table, to.z, self.alpha).all);
         let others = left / (1.0 - self.mean).max(1e-6) * FRAC_1_PI * to.z;
-        // The mean of Schlick's curve; what bounces n times is coloured n times.
+        // The mean of Schlick's curve. Light that bounces n times is coloured n times.
         let fresnel = (self.color * 20.0 + Vec3::ONE) * (1.0 / 21.0);
         let tint = fresnel * fresnel * self.mean / (Vec3::ONE - fresnel * (1.0 - self.mean));
         (
@@ -158,13 +160,13 @@ pub struct Shares {
 }
 
 impl Shares {
-    /// All light: what there is without a table.
+    /// All light.
     const ALL: Self = Self {
         all: 1.0,
         grazing: 0.0,
     };
 
-    /// Towards a direction, between the entries of the table; all light without a table.
+    /// The shares towards a direction, interpolated in the table. Without a table, all light.
     #[inline]
     #[must_use]
     pub fn towards(table: &[f32], cosine: f32, alpha: f32) -> Self {
@@ -180,7 +182,7 @@ impl Shares {
         }
     }
 
-    /// The mean over the cosine-weighted hemisphere; all light without a table.
+    /// The means over the cosine-weighted hemisphere. Without a table, all light.
     #[inline]
     #[must_use]
     pub fn mean(table: &[f32], alpha: f32) -> Self {
@@ -195,7 +197,8 @@ impl Shares {
         }
     }
 
-    /// The share that a boundary of this reflectance straight on returns, by Schlick's curve.
+    /// The share that a boundary returns whose reflectance at normal incidence is `straight_on`, by
+    /// Schlick's curve.
     #[inline]
     #[must_use]
     pub fn of(self, straight_on: f32) -> f32 {
@@ -203,7 +206,7 @@ impl Shares {
     }
 }
 
-/// Between the entries of the share that begins at `first`, in columns and rows.
+/// Interpolates the share that begins at `first`; x and y count columns and rows.
 #[inline]
 fn between(table: &[f32], first: usize, x: f32, y: f32) -> f32 {
     let (x0, y0) = (
@@ -221,7 +224,7 @@ fn between(table: &[f32], first: usize, x: f32, y: f32) -> f32 {
     low + (c + (d - c) * x1 - low) * y1
 }
 
-/// Between the means of the share that begins at `first`, in rows.
+/// Interpolates the means of the share that begins at `first`; y counts rows.
 #[inline]
 fn mean_between(table: &[f32], first: usize, y: f32) -> f32 {
     let y0 = (y as usize).min(ALBEDO_SIDE - 2);
@@ -237,7 +240,7 @@ mod albedo {
 
     use super::{ALBEDO_LEN, ALBEDO_SIDE, SHARE_LEN, Shares, hidden, sample_visible, schlick};
 
-    /// What the first bounce on a rough surface returns.
+    /// Makes the table of [`Shares`].
     #[derive(Clone, Copy, Debug)]
     pub struct Albedo;
 

@@ -1,4 +1,4 @@
-//! [`Material`]: what a sphere is made of. Runs on the GPU and on the CPU.
+//! [`Material`]: the material of a sphere. Runs on the GPU and on the CPU.
 
 pub mod microfacet;
 pub mod optics;
@@ -15,12 +15,13 @@ use crate::arithmetic::elements::read;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Material {
-    /// Diffuse: the reflectance; metal: the reflectance seen straight on; plastic: the reflectance of the base; linear Rec. 709, each
-    /// channel between 0 and 1.
+    /// Diffuse: the reflectance. Metal: the reflectance at normal incidence. Plastic: the
+    /// reflectance of the base. Linear Rec. 709, each channel between 0 and 1.
     pub color: Vec3,
-    /// One of the constants.
+    /// The kind, one of the constants.
     pub kind: u32,
-    /// Emissive: the radiance. Glass: what it absorbs per scene unit. Plastic: the refractive index of the coat, three times.
+    /// Emissive: the radiance. Glass: the absorption per scene unit. Plastic: the refractive index
+    /// of the coat, in each component.
     pub volume: Vec3,
     /// Metal, plastic: GGX's α. Glass: the refractive index inside over that outside.
     pub parameter: f32,
@@ -33,7 +34,7 @@ impl Material {
     pub const METAL: u32 = 1;
     /// Glass inside of the sphere.
     pub const GLASS: u32 = 2;
-    /// Glass outside of the sphere, and nothing inside: the inner side of hollow glass.
+    /// Glass outside of the sphere and none inside: the inner side of hollow glass.
     pub const BUBBLE: u32 = 3;
     /// Glows, the same in all directions, and reflects nothing.
     pub const EMISSIVE: u32 = 4;
@@ -63,7 +64,7 @@ impl Material {
         }
     }
 
-    /// Glass of this refractive index, which absorbs this much per scene unit.
+    /// Glass of this refractive index and this absorption per scene unit.
     #[must_use]
     pub const fn glass(index: f32, absorption: Vec3) -> Self {
         Self {
@@ -74,7 +75,7 @@ impl Material {
         }
     }
 
-    /// A hollow in glass of this refractive index, which absorbs this much per scene unit.
+    /// A hollow in glass of this refractive index and this absorption per scene unit.
     #[must_use]
     pub const fn bubble(index: f32, absorption: Vec3) -> Self {
         Self {
@@ -85,8 +86,8 @@ impl Material {
         }
     }
 
-    /// Plastic: a diffuse base of this reflectance under a clear coat of this refractive index, with a roughness from 0, polished,
-    /// to 1; α is the square of the roughness.
+    /// Plastic: a diffuse base of this reflectance under a clear coat of this refractive index. The
+    /// roughness goes from 0, polished, to 1; α is its square.
     #[must_use]
     pub const fn plastic(color: Vec3, roughness: f32, index: f32) -> Self {
         Self {
@@ -109,8 +110,8 @@ impl Material {
     }
 }
 
-/// The material of the sphere with this index; an index into `materials` that leaves the table
-/// takes its last entry.
+/// The material of the sphere with this index; an index beyond `materials`
+/// selects its last entry.
 #[inline]
 #[must_use]
 pub fn material_of(sphere: usize, material_ids: &[u32], materials: &[Material]) -> Material {

@@ -1,15 +1,15 @@
 //! What happens to light where two transparent media meet: Snell's law and Fresnel's. Runs on
 //! the GPU and on the CPU.
 //!
-//! η is the refractive index on the side that the light comes from over that on the other side,
-//! cos θ the cosine between the direction back and the normal. Snell's law makes the cosine on the
+//! η is the refractive index on the side that the light comes from over that on the other side, cos
+//! θ the cosine between the direction back and the normal. Snell's law makes the cosine on the
 //! other side √κ with κ = 1 − η²(1 − cos²θ) = (1 − η)(1 + η) + (η cos θ)²; where κ < 0 all light is
-//! reflected. In floats the second form is off by at most 6u of its terms, u = 2⁻²⁴. Where they cancel
-//! further than that, next to the critical angle, κ is computed in pairs of floats, off by 2⁻⁴² of the
-//! terms, so that the choice between the two sides is that of exact arithmetic.
+//! reflected. In floats the second form is off by at most 6u of its terms, u = 2⁻²⁴. Where they
+//! cancel further than that, next to the critical angle, κ is computed in pairs of floats, off by
+//! 2⁻⁴² of the terms, so that the choice between the two sides is that of exact arithmetic.
 //!
-//! Fresnel's equations for unpolarised light are those of M. Born and E. Wolf, Principles of Optics,
-//! 7th ed., § 1.5.2.
+//! Fresnel's equations for unpolarised light are those of M. Born and E. Wolf, Principles of
+//! Optics, 7th ed., § 1.5.2.
 
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;

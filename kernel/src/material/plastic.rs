@@ -14,8 +14,8 @@
 //! R follows from reciprocity). The function is reciprocal, and where c is one all light is
 //! reflected, whatever the index and the roughness.
 //!
-//! With Schlick's reflectance F = F₀ + (1 − F₀) (1 − cos)⁵, E = F₀ (A − B) + B: A is the share that a
-//! coat of reflectance one returns, B that of a reflectance of (1 − cos)⁵. [`Shares`] tells both,
+//! With Schlick's reflectance F = F₀ + (1 − F₀) (1 − cos)⁵, E = F₀ (A − B) + B: A is the share that
+//! a coat of reflectance one returns, B that of a reflectance of (1 − cos)⁵. [`Shares`] tells both,
 //! whatever the index.
 //!
 //! Directions are in the frame of the surface: z is the normal's, and both directions leave.
@@ -35,14 +35,14 @@ pub struct Plastic {
     straight_on: f32,
     alpha: f32,
     from: Vec3,
-    /// What of the diffuse term does not depend on the other direction.
+    /// The factors of the diffuse term that do not depend on the other direction.
     base: Vec3,
     /// The chance of sampling the coat rather than the base.
     chance: f32,
 }
 
 impl Plastic {
-    /// Of a vertex that is none: black.
+    /// Black plastic, for vertices of other materials.
     pub(crate) const NONE: Self = Self {
         straight_on: 0.0,
         alpha: 1.0,
@@ -52,7 +52,7 @@ impl Plastic {
     };
 
     /// Plastic whose base has the reflectance `color` under a coat of this refractive index and
-    /// this α, seen along `from`; `table` is what [`Albedo`](super::microfacet::Albedo) makes.
+    /// this α, seen from `from`. [`Albedo`](super::microfacet::Albedo) makes the table.
     #[inline]
     #[must_use]
     pub fn new(color: Vec3, index: f32, alpha: f32, from: Vec3, table: &[f32]) -> Self {

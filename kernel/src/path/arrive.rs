@@ -11,7 +11,7 @@ use crate::effects::Effects;
 use crate::light;
 use crate::sphere::Sphere;
 
-/// The light that a path brings home which meets nothing.
+/// Adds the light of the sky, for a path that meets nothing.
 #[inline]
 pub(super) fn arrive_at_sky<T: Traversal>(scenery: &Scenery<'_, T>, path: &mut Path) {
     let (effects, sky) = (scenery.effects, &scenery.launch.sky);
@@ -37,7 +37,7 @@ pub(super) fn arrive_at_sky<T: Traversal>(scenery: &Scenery<'_, T>, path: &mut P
     path.radiance += path.throughput * light;
 }
 
-/// The light that a path brings home which meets a sphere of light.
+/// Adds the light of an emissive sphere, for a path that meets one.
 #[inline]
 pub(super) fn arrive_at_lamp<T: Traversal>(
     scenery: &Scenery<'_, T>,

@@ -10,7 +10,8 @@ use crate::material::Material;
 use crate::material::optics::{Incidence, reflect};
 use crate::surface::{Surface, unit};
 
-/// Reflects the path at glass or lets it through, by chance, as Fresnel's equations share it out.
+/// Reflects or refracts a path at glass, by chance: the probabilities are those of Fresnel's
+/// equations.
 #[inline]
 pub(super) fn cross_glass(path: &mut Path, surface: &Surface, material: &Material, u: f32) {
     let cosine = surface.normal.dot(path.direction);
@@ -28,7 +29,7 @@ pub(super) fn cross_glass(path: &mut Path, surface: &Surface, material: &Materia
     let direction = if u < fresnel.reflectance {
         reflect(path.direction, normal)
     } else {
-        // Which side of the surface is the one that absorbs.
+        // The glass, which absorbs, is inside of a sphere of glass and outside of a hollow.
         path.absorption = if enters == (material.kind == Material::GLASS) {
             material.volume
         } else {
@@ -39,7 +40,7 @@ pub(super) fn cross_glass(path: &mut Path, surface: &Surface, material: &Materia
     path.leave(surface, unit(direction), 0.0);
 }
 
-/// Beer's law.
+/// The share of light that is left after this distance, by Beer's law.
 #[inline]
 pub(super) fn absorb(absorption: Vec3, distance: f32) -> Vec3 {
     Vec3::new(

@@ -1,25 +1,25 @@
-//! A light path on its way. Runs on the GPU and on the CPU.
+//! The state of a light path. Runs on the GPU and on the CPU.
 
 use glam::Vec3;
 
 use crate::surface::Surface;
 
-/// A path on its way.
+/// The state of a light path.
 #[derive(Clone, Copy)]
 pub(super) struct Path {
     pub(super) origin: Vec3,
     pub(super) direction: Vec3,
-    /// What light that arrives here still counts for.
+    /// The weight of light that arrives here.
     pub(super) throughput: Vec3,
-    /// What has arrived.
+    /// The light that has arrived so far.
     pub(super) radiance: Vec3,
-    /// What the glass that the path is in absorbs per scene unit.
+    /// The absorption per scene unit of the glass that the path is in.
     pub(super) absorption: Vec3,
-    /// The density with which the direction was sampled, or zero if no light could be looked for.
+    /// The density with which the direction was sampled, or zero if no light was sampled.
     pub(super) density: f32,
     pub(super) time: f32,
     pub(super) bounces: u32,
-    /// Zero for a path that saw nothing but the background.
+    /// Zero for a path that met nothing but the background.
     pub(super) alpha: f32,
     /// The distance to the first sphere, [`Hit::NONE_T`](crate::Hit::NONE_T) if there was none.
     pub(super) depth: f32,
@@ -36,7 +36,7 @@ impl Path {
     }
 }
 
-/// Russian roulette: a dark path ends, and one that does not counts for more.
+/// Russian roulette: ends dark paths by chance, and raises the weight of those that go on.
 #[inline]
 pub(super) fn survives(path: &mut Path, u: f32) -> bool {
     let brightest = path.throughput.max_element();

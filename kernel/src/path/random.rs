@@ -21,7 +21,8 @@ pub struct Sampler {
 const OF_CAMERA: u32 = 3;
 const OF_VERTEX: u32 = 8;
 
-/// The random numbers of one vertex of a path. The sampler is copied, because GPUs know no struct of pointers.
+/// The random numbers of one vertex of a path. It holds a copy of the
+/// sampler, because SPIR-V has no structs of pointers.
 #[derive(Clone, Copy, Debug)]
 pub struct VertexNumbers {
     sampler: Sampler,
@@ -29,7 +30,7 @@ pub struct VertexNumbers {
 }
 
 impl VertexNumbers {
-    /// For the direction in which the path goes on.
+    /// For the direction in which the path continues.
     #[inline]
     #[must_use]
     pub fn direction(&self) -> Vec2 {
@@ -43,28 +44,28 @@ impl VertexNumbers {
         self.sampler.pair(self.first + 1)
     }
 
-    /// For which light is looked for.
+    /// For the choice of a light.
     #[inline]
     #[must_use]
     pub fn which_light(&self) -> f32 {
         self.sampler.single(self.first + 2)
     }
 
-    /// For a choice between two ways to go on.
+    /// For the choice between two lobes.
     #[inline]
     #[must_use]
     pub fn choice(&self) -> f32 {
         self.sampler.single(self.first + 3)
     }
 
-    /// For how far the path goes in fog.
+    /// For the distance to the next scattering in fog.
     #[inline]
     #[must_use]
     pub fn way(&self) -> f32 {
         self.sampler.single(self.first + 4)
     }
 
-    /// For whether the path goes on at all.
+    /// For Russian roulette.
     #[inline]
     #[must_use]
     pub fn roulette(&self) -> f32 {
@@ -73,7 +74,7 @@ impl VertexNumbers {
 }
 
 impl Sampler {
-    /// The numbers of a path's vertex, counted from zero.
+    /// The numbers of a vertex of the path; vertices count from zero.
     #[inline]
     #[must_use]
     pub fn at_vertex(&self, index: u32) -> VertexNumbers {

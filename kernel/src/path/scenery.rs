@@ -1,4 +1,4 @@
-//! [`Scenery`]: what stays the same for all light paths of a launch. Runs on the GPU and on the CPU.
+//! [`Scenery`]: the constants of a launch of light paths. Runs on the GPU and on the CPU.
 
 use glam::Vec4;
 
@@ -12,17 +12,17 @@ use crate::material::Material;
 use crate::ray::Ray;
 use crate::sphere::Sphere;
 
-/// What stays the same for all paths of a launch: how the pipeline was compiled, what it was told,
-/// and the world.
+/// The constants of a launch of light paths: how the pipeline was compiled, the parameters of the
+/// launch, and the world.
 #[derive(Clone, Copy, Debug)]
 pub struct Scenery<'a, T> {
     /// The effects that the pipeline holds.
     pub effects: Effects,
     /// The rung, a value of [`Rung::to_u32`](crate::Rung::to_u32).
     pub rung: u32,
-    /// What the launch was told.
+    /// The parameters of the launch.
     pub launch: &'a PathLaunch,
-    /// What finds hits among the spheres, on this rung.
+    /// Finds hits among the spheres, on this rung.
     pub traversal: T,
     /// The spheres.
     pub spheres: &'a [Sphere],
@@ -32,9 +32,10 @@ pub struct Scenery<'a, T> {
     pub material_ids: &'a [u32],
     /// The materials.
     pub materials: &'a [Material],
-    /// The lights that are looked for.
+    /// The lights that are sampled.
     pub lights: &'a [Light],
-    /// The table of [`RoughMetal`](crate::material::microfacet::RoughMetal), and after it that of [`Sky`](crate::light::sky::Sky).
+    /// The table of [`Shares`](crate::material::microfacet::Shares), followed by that of
+    /// [`Sky`](crate::light::sky::Sky).
     pub tables: &'a [f32],
 }
 

@@ -1,4 +1,5 @@
-//! Light that is looked for: a lamp chosen at random, and what surrounds the scene. Runs on the GPU and on the CPU.
+//! Samples a light: a lamp chosen at random, or the surroundings of the scene. Runs on the GPU and
+//! on the CPU.
 
 use glam::{Vec2, Vec3};
 // On the CPU, std has these functions.
@@ -18,7 +19,7 @@ use crate::light::{self, Light};
 use crate::precision::intersect;
 use crate::surface::{Surface, unit};
 
-/// Whether the ambient light along `direction` arrives at the surface.
+/// The ambient light that arrives at the surface from `direction`.
 #[inline]
 pub(super) fn ambient_light<T: Traversal>(
     scenery: &Scenery<'_, T>,
@@ -38,7 +39,7 @@ pub(super) fn ambient_light<T: Traversal>(
     }
 }
 
-/// The light that one light, chosen at random, gives into the path by way of the vertex.
+/// The light of one lamp, chosen at random, that the vertex scatters into the path.
 #[inline]
 pub(super) fn light_from_seeking<T: Traversal>(
     scenery: &Scenery<'_, T>,
@@ -52,7 +53,7 @@ pub(super) fn light_from_seeking<T: Traversal>(
     if scenery.effects.any(Effects::AMBIENT_OCCLUSION)
         && (vertex.lobe == LAMBERT) & (lamp.kind == Light::ENVIRONMENT)
     {
-        // It is the ambient light already.
+        // The ambient light already contains it.
         return Vec3::ZERO;
     }
     let found = seek(
@@ -95,7 +96,7 @@ pub(super) fn light_from_seeking<T: Traversal>(
     light
 }
 
-/// A light as it is looked for from a point.
+/// A sample of a light, seen from a point.
 struct Found {
     direction: Vec3,
     /// Radiance; of a light without extent, irradiance at the point.
@@ -107,7 +108,7 @@ struct Found {
     is_sphere: bool,
 }
 
-/// A direction in which the light is.
+/// Samples a direction towards the light.
 #[inline]
 fn seek<T: Traversal>(
     scenery: &Scenery<'_, T>,

@@ -1,7 +1,7 @@
-//! From a pixel to its light paths, vertex after vertex. Runs on the GPU and on the CPU.
+//! Traces the light paths of a pixel, vertex after vertex. Runs on the GPU and on the CPU.
 //!
-//! A thread works through its samples in one loop: where a path has ended the next begins, so that
-//! neighbours whose paths are longer do not wait.
+//! A thread works through its samples in one loop: when a path ends, the next one begins, so that
+//! no thread waits for the longer paths of its neighbours.
 
 use core::f32::consts::PI;
 
@@ -25,19 +25,19 @@ use crate::material::{Material, material_of};
 use crate::ray::Ray;
 use crate::surface::{Surface, unit};
 
-/// Effects for which light paths are longer than their first vertex.
+/// Effects for which paths continue beyond their first vertex.
 const BOUNCING: Effects = Effects::MIRROR
     .and(Effects::ROUGH_METAL)
     .and(Effects::PLASTIC)
     .and(Effects::GLASS)
     .and(Effects::INTERREFLECTION)
     .and(Effects::FOG);
-/// Effects for which lights are looked for.
+/// Effects for which lights are sampled.
 const SEEKING: Effects = Effects::HARD_SHADOWS
     .and(Effects::SOFT_SHADOWS)
     .and(Effects::ENVIRONMENT);
 
-/// Adds the launch's samples of one pixel to what it holds. `pixel` counts from the upper left of
+/// Adds the samples of a launch to one pixel. `pixel` counts from the upper left of
 /// the tile.
 #[inline(always)]
 #[must_use]
@@ -64,7 +64,7 @@ pub fn trace_pixel<T: Traversal>(
     accumulator
 }
 
-/// The path of a sample where it leaves the camera.
+/// Starts the path of a sample at the camera.
 #[inline]
 fn start<T: Traversal>(scenery: &Scenery<'_, T>, pixel: UVec2, sampler: &Sampler) -> Path {
     let (effects, launch) = (scenery.effects, scenery.launch);
@@ -106,19 +106,20 @@ fn start<T: Traversal>(scenery: &Scenery<'_, T>, pixel: UVec2, sampler: &Sampler
     }
 }
 
-/// Where a path is: on a surface, or in fog. In this order, because naga takes a surface to fill 32 bytes.
+/// The place of a path: on a surface, or in fog. The surface comes last, because naga counts 32
+/// bytes for it, and it has 28.
 #[repr(C)]
 struct Place {
     material: Material,
     surface: Surface,
 }
 
-/// What comes of a path at a place: one of these, or it is scattered by the lobe of this value.
+/// The event at a place is one of these two, or else the lobe that scatters the path.
 const ENDS: u32 = u32::MAX;
-/// It has left for the next place.
+/// The path has left for the next place.
 const LEAVES: u32 = u32::MAX - 1;
 
-/// Takes a path to its next place and away from it; false where it ends.
+/// Takes a path to its next place and away from it. Returns false if the path ends.
 #[inline]
 fn step<T: Traversal>(scenery: &Scenery<'_, T>, path: &mut Path, sampler: &Sampler) -> bool {
     let (effects, launch) = (scenery.effects, scenery.launch);
@@ -151,7 +152,7 @@ fn step<T: Traversal>(scenery: &Scenery<'_, T>, path: &mut Path, sampler: &Sampl
     survives(path, numbers.roulette())
 }
 
-/// Stops a path in the fog, by chance: `u` says how far it goes there. Returns whether it does.
+/// Stops a path in the fog, by chance: `u` decides how far it gets. Returns whether it stops.
 #[inline]
 fn meet_fog<T: Traversal>(
     scenery: &Scenery<'_, T>,
@@ -175,7 +176,8 @@ fn meet_fog<T: Traversal>(
     is_in_fog
 }
 
-/// Takes a path to what its ray has hit, and through glass or away from a mirror; where it meets light, or nothing, it ends.
+/// Takes a path to the sphere that its ray hits, and on through glass or away from a mirror. A path
+/// that meets a light, or nothing, ends. Returns the event.
 #[inline]
 fn meet_surface<T: Traversal>(
     scenery: &Scenery<'_, T>,
@@ -236,7 +238,8 @@ fn meet_surface<T: Traversal>(
     LAMBERT
 }
 
-/// Looks for light at a place that scatters by this lobe, and sends the path off in a random direction; false where it ends.
+/// Samples a light at a place that scatters by this lobe, and continues the path in a random
+/// direction. Returns false if the path ends.
 #[inline]
 fn scatter<T: Traversal>(
     scenery: &Scenery<'_, T>,
@@ -250,14 +253,14 @@ fn scatter<T: Traversal>(
     let Place { surface, material } = place;
     let facing = surface.facing(path.direction);
     if effects.any(Effects::HEADLAMP) && lobe == LAMBERT {
-        // Lambert with the lamp where the path comes from.
+        // Lambert with the lamp at the eye.
         path.radiance += path.throughput * material.color * facing.dot(path.direction).abs();
         return false;
     }
     let continues = continues & ((lobe != LAMBERT) | effects.any(Effects::INTERREFLECTION));
     let vertex = Vertex::new(scenery, lobe, path.direction, facing, material);
     if effects.any(Effects::HEADLAMP) && effects.any(Effects::PLASTIC) && lobe == PLASTIC {
-        // As for Lambert, whose value is a πth; and the coat reflects what surrounds the scene.
+        // The lamp has the same power as for Lambert. The coat also reflects the background.
         let (value, _) = vertex.evaluate(scenery, -path.direction);
         path.radiance += path.throughput * value * PI;
     }
@@ -277,7 +280,7 @@ fn scatter<T: Traversal>(
     }
     let direction = vertex.sample(scenery, numbers.direction(), numbers.choice());
     let (value, density) = vertex.evaluate(scenery, direction);
-    // Asked this way, so that a NaN ends the path.
+    // Written so that a NaN ends the path.
     let is_possible = density > 0.0;
     if !is_possible {
         return false;

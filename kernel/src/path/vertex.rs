@@ -1,4 +1,4 @@
-//! Where a path is scattered: by a diffuse surface, by rough metal, by plastic, or by fog. Runs on the GPU and on the CPU.
+//! Scattering by a diffuse surface, rough metal, plastic or fog. Runs on the GPU and on the CPU.
 
 use glam::{Vec2, Vec3};
 
@@ -11,15 +11,15 @@ use crate::material::microfacet::RoughMetal;
 use crate::material::plastic::Plastic;
 use crate::surface::unit;
 
-/// How a vertex scatters.
+/// The lobes.
 pub(super) const LAMBERT: u32 = 0;
 pub(super) const METAL: u32 = 1;
 pub(super) const PHASE: u32 = 2;
 pub(super) const PLASTIC: u32 = 3;
 
-/// Where a path is scattered, other than at a mirror or at glass.
+/// A place that scatters a path; mirrors and glass are none.
 pub(super) struct Vertex {
-    /// One of the constants.
+    /// The lobe, one of the constants.
     pub(super) lobe: u32,
     /// The direction from which the path comes.
     pub(super) incoming: Vec3,
@@ -33,8 +33,8 @@ pub(super) struct Vertex {
 }
 
 impl Vertex {
-    /// Of this lobe, on a surface of this material whose normal on the side of the path is
-    /// `facing`; `incoming` is the direction that the path comes along.
+    /// A vertex with this lobe on a surface of this material. `facing` is the normal on the side of
+    /// the path, `incoming` the direction along which the path arrives.
     #[inline]
     pub(super) fn new<T: Traversal>(
         scenery: &Scenery<'_, T>,
@@ -62,8 +62,8 @@ impl Vertex {
         }
     }
 
-    /// How much light is scattered from `to` into the path, times the cosine at a surface; and the
-    /// density with which [`Vertex::sample`] chooses `to`.
+    /// The share of light that is scattered from `to` into the path, times the cosine at a surface;
+    /// and the density with which [`Vertex::sample`] chooses `to`.
     #[inline]
     pub(super) fn evaluate<T: Traversal>(&self, scenery: &Scenery<'_, T>, to: Vec3) -> (Vec3, f32) {
         let effects = scenery.effects;
@@ -80,7 +80,7 @@ impl Vertex {
         }
     }
 
-    /// A direction to continue in.
+    /// Samples a direction in which the path continues.
     #[inline]
     pub(super) fn sample<T: Traversal>(
         &self,
@@ -100,13 +100,13 @@ impl Vertex {
         }
     }
 
-    /// A direction in the frame of the surface.
+    /// A direction of the scene, in the frame of the surface.
     #[inline]
     fn local(&self, to: Vec3) -> Vec3 {
         Vec3::new(self.x.dot(to), self.y.dot(to), self.facing.dot(to))
     }
 
-    /// A direction in the frame of the surface as the scene has it.
+    /// A direction of the surface's frame, in scene coordinates.
     #[inline]
     fn global(&self, to: Vec3) -> Vec3 {
         unit(self.x * to.x + self.y * to.y + self.facing * to.z)
