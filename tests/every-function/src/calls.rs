@@ -12,13 +12,9 @@ use crate::{Call, seen};
 /// A call of each public function.
 pub const CALLS: &[Call] = &[
     Call::new(
-        "[spherule_kernel::sphere::Sphere] as spherule_kernel::nearest::Spheres::count",
+        "[spherule_kernel::sphere::Sphere] as spherule_kernel::accel::brute::Spheres::count",
         |s| {
-            seen(
-                <[spherule_kernel::sphere::Sphere] as spherule_kernel::nearest::Spheres>::count(
-                    &s.many()[..],
-                ),
-            )
+            seen(<[spherule_kernel::sphere::Sphere] as spherule_kernel::accel::brute::Spheres>::count(&s.many()[..]))
         },
     ),
     Call::new("f32 as spherule_kernel::lane::Lane::abs", |s| {
@@ -93,6 +89,43 @@ pub const CALLS: &[Call] = &[
     Call::new("f64 as spherule_kernel::lane::Lane::sqrt", |s| {
         seen(<f64 as spherule_kernel::lane::Lane>::sqrt(s.draw()))
     }),
+    Call::new("spherule::accel::build::build", |s| {
+        seen(spherule::accel::build::build(
+            &s.many()[..],
+            &s.many()[..],
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule::accel::build::build_still", |s| {
+        seen(spherule::accel::build::build_still(&s.many()[..], s.draw()))
+    }),
+    Call::new("spherule::accel::tree::Acceleration::min_spheres", |s| {
+        seen(spherule::accel::tree::Acceleration::min_spheres(
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule::accel::tree::BuiltTree::sort", |s| {
+        seen(spherule::accel::tree::BuiltTree::sort(
+            &s.draw(),
+            &s.many::<u32>()[..],
+        ))
+    }),
+    Call::new("spherule::accel::tree::BuiltTree::sort_world", |s| {
+        seen(spherule::accel::tree::BuiltTree::sort_world(
+            &s.draw(),
+            &s.draw(),
+        ))
+    }),
+    Call::new("spherule::accel::tree::Nodes as Deref", |s| {
+        seen(std::ops::Deref::deref(
+            &s.draw::<spherule::accel::tree::Nodes>(),
+        ))
+    }),
+    Call::new("spherule::accel::tree::Nodes::tree", |s| {
+        seen(spherule::accel::tree::Nodes::tree(&s.draw()))
+    }),
     Call::new("spherule::accuracy::ask::fresnel", |s| {
         seen(spherule::accuracy::ask::fresnel(
             &spherule::Device::Cpu,
@@ -130,38 +163,6 @@ pub const CALLS: &[Call] = &[
             &s.many()[..],
         ))
     }),
-    Call::new("spherule::accuracy::canary::Canary::objection", |s| {
-        seen(spherule::accuracy::canary::Canary::objection(
-            &s.draw(),
-            s.draw(),
-        ))
-    }),
-    Call::new("spherule::accuracy::canary::Canary::on", |_| {
-        seen(spherule::accuracy::canary::Canary::on(
-            &spherule::Device::Cpu,
-        ))
-    }),
-    Call::new("spherule::accuracy::canary::Canary::on_gpu", |s| {
-        seen(spherule::accuracy::canary::Canary::on_gpu(s.gpu()))
-    })
-    .on_gpu(),
-    Call::new("spherule::accuracy::canary::Canary::require", |s| {
-        seen(spherule::accuracy::canary::Canary::require(
-            &s.draw(),
-            s.draw(),
-            &s.text(),
-        ))
-    }),
-    Call::new("spherule::accuracy::canary::Canary::require_on_gpu", |s| {
-        seen(spherule::accuracy::canary::Canary::require_on_gpu(
-            s.gpu(),
-            s.draw(),
-        ))
-    })
-    .on_gpu(),
-    Call::new("spherule::accuracy::canary::Share::is_whole", |s| {
-        seen(spherule::accuracy::canary::Share::is_whole(s.draw()))
-    }),
     Call::new("spherule::accuracy::cases::Case::judge", |s| {
         seen(spherule::accuracy::cases::Case::judge(
             &s.draw(),
@@ -180,16 +181,6 @@ pub const CALLS: &[Call] = &[
     }),
     Call::new("spherule::accuracy::cases::catalogue", |_| {
         seen(spherule::accuracy::cases::catalogue())
-    }),
-    Call::new("spherule::accuracy::choose::bound", |s| {
-        seen(spherule::accuracy::choose::bound(&s.draw(), s.draw()))
-    }),
-    Call::new("spherule::accuracy::choose::choose", |s| {
-        seen(spherule::accuracy::choose::choose(
-            &s.draw(),
-            s.draw(),
-            s.draw(),
-        ))
     }),
     Call::new("spherule::accuracy::families::Family::name", |s| {
         seen(spherule::accuracy::families::Family::name(s.draw()))
@@ -305,36 +296,6 @@ pub const CALLS: &[Call] = &[
             &s.many()[..],
         ))
     }),
-    Call::new("spherule::accuracy::random::Random::log_within", |s| {
-        seen(spherule::accuracy::random::Random::log_within(
-            &mut s.draw(),
-            s.draw(),
-            s.draw(),
-        ))
-    }),
-    Call::new("spherule::accuracy::random::Random::new", |s| {
-        seen(spherule::accuracy::random::Random::new(s.draw()))
-    }),
-    Call::new("spherule::accuracy::random::Random::next_u32", |s| {
-        seen(spherule::accuracy::random::Random::next_u32(&mut s.draw()))
-    }),
-    Call::new("spherule::accuracy::random::Random::unit_vec3", |s| {
-        seen(spherule::accuracy::random::Random::unit_vec3(&mut s.draw()))
-    }),
-    Call::new("spherule::accuracy::random::Random::vec3", |s| {
-        seen(spherule::accuracy::random::Random::vec3(
-            &mut s.draw(),
-            s.draw(),
-            s.draw(),
-        ))
-    }),
-    Call::new("spherule::accuracy::random::Random::within", |s| {
-        seen(spherule::accuracy::random::Random::within(
-            &mut s.draw(),
-            s.draw(),
-            s.draw(),
-        ))
-    }),
     Call::new("spherule::accuracy::report::page", |s| {
         seen(spherule::accuracy::report::page(
             &s.text(),
@@ -378,12 +339,6 @@ pub const CALLS: &[Call] = &[
     }),
     Call::new("spherule::accuracy::screen::screen", |s| {
         seen(spherule::accuracy::screen::screen(&s.draw(), &s.draw()))
-    }),
-    Call::new("spherule::accuracy::ulp::distance", |s| {
-        seen(spherule::accuracy::ulp::distance(s.draw(), s.draw()))
-    }),
-    Call::new("spherule::accuracy::ulp::shown", |s| {
-        seen(spherule::accuracy::ulp::shown(s.draw()))
     }),
     Call::new("spherule::bench::export::export", |s| {
         seen(spherule::bench::export::export(
@@ -479,6 +434,12 @@ pub const CALLS: &[Call] = &[
             s.draw(),
         ))
     }),
+    Call::new("spherule::choose::bound", |s| {
+        seen(spherule::choose::bound(&s.draw(), s.draw()))
+    }),
+    Call::new("spherule::choose::choose", |s| {
+        seen(spherule::choose::choose(&s.draw(), s.draw(), s.draw()))
+    }),
     Call::new("spherule::cpu::InstructionSet as Display", |s| {
         seen(s.draw::<spherule::cpu::InstructionSet>().to_string())
     }),
@@ -509,15 +470,6 @@ pub const CALLS: &[Call] = &[
     Call::new("spherule::device::Device::open", |s| {
         seen(spherule::device::Device::open(&s.draw()))
     }),
-    Call::new("spherule::device::adapter::DeviceChoice as Display", |s| {
-        seen(
-            s.draw::<spherule::device::adapter::DeviceChoice>()
-                .to_string(),
-        )
-    }),
-    Call::new("spherule::device::adapter::DeviceChoice as FromStr", |s| {
-        seen(s.text().parse::<spherule::device::adapter::DeviceChoice>())
-    }),
     Call::new("spherule::device::adapter::instance", |_| {
         seen(spherule::device::adapter::instance())
     }),
@@ -536,6 +488,42 @@ pub const CALLS: &[Call] = &[
         seen(spherule::device::buffer::Buffer::len(&s.draw()))
     })
     .on_gpu(),
+    Call::new("spherule::device::canary::Canary::objection", |s| {
+        seen(spherule::device::canary::Canary::objection(
+            &s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule::device::canary::Canary::on", |_| {
+        seen(spherule::device::canary::Canary::on(&spherule::Device::Cpu))
+    }),
+    Call::new("spherule::device::canary::Canary::on_gpu", |s| {
+        seen(spherule::device::canary::Canary::on_gpu(s.gpu()))
+    })
+    .on_gpu(),
+    Call::new("spherule::device::canary::Canary::require", |s| {
+        seen(spherule::device::canary::Canary::require(
+            &s.draw(),
+            s.draw(),
+            &s.text(),
+        ))
+    }),
+    Call::new("spherule::device::canary::Canary::require_on_gpu", |s| {
+        seen(spherule::device::canary::Canary::require_on_gpu(
+            s.gpu(),
+            s.draw(),
+        ))
+    })
+    .on_gpu(),
+    Call::new("spherule::device::canary::Share::is_whole", |s| {
+        seen(spherule::device::canary::Share::is_whole(s.draw()))
+    }),
+    Call::new("spherule::device::choice::DeviceChoice as Display", |s| {
+        seen(s.draw::<spherule::device::DeviceChoice>().to_string())
+    }),
+    Call::new("spherule::device::choice::DeviceChoice as FromStr", |s| {
+        seen(s.text().parse::<spherule::device::DeviceChoice>())
+    }),
     Call::new("spherule::device::errors::is_catching", |_| {
         seen(spherule::device::is_catching())
     }),
@@ -634,19 +622,19 @@ pub const CALLS: &[Call] = &[
     Call::new("spherule::device::gpu::GpuOptions as Default", |_| {
         seen(<spherule::device::gpu::GpuOptions as Default>::default())
     }),
-    Call::new("spherule::device::gpu::Kernel::workgroup_size", |s| {
-        seen(spherule::device::gpu::Kernel::workgroup_size(s.kernel()))
+    Call::new("spherule::device::kernel::Kernel::workgroup_size", |s| {
+        seen(spherule::device::kernel::Kernel::workgroup_size(s.kernel()))
     })
     .on_gpu(),
-    Call::new("spherule::device::gpu::Kernel::workgroups_for", |s| {
-        seen(spherule::device::gpu::Kernel::workgroups_for(
+    Call::new("spherule::device::kernel::Kernel::workgroups_for", |s| {
+        seen(spherule::device::kernel::Kernel::workgroups_for(
             s.kernel(),
             s.draw(),
         ))
     })
     .on_gpu(),
-    Call::new("spherule::device::gpu::LaunchTime::best", |s| {
-        seen(spherule::device::gpu::LaunchTime::best(&s.draw()))
+    Call::new("spherule::device::kernel::LaunchTime::best", |s| {
+        seen(spherule::device::kernel::LaunchTime::best(&s.draw()))
     }),
     Call::new("spherule::device::spirv::Module as Debug", |s| {
         seen(format!("{:?}", s.draw::<spherule::device::spirv::Module>()))
@@ -691,11 +679,11 @@ pub const CALLS: &[Call] = &[
     Call::new("spherule::error::Place::line_column", |s| {
         seen(spherule::error::Place::line_column(&s.draw()))
     }),
-    Call::new("spherule::film::Image::alpha", |s| {
-        seen(spherule::film::Image::alpha(&s.draw()))
-    }),
     Call::new("spherule::film::Image::depth_range", |s| {
         seen(spherule::film::Image::depth_range(&s.draw()))
+    }),
+    Call::new("spherule::film::Image::has_alpha", |s| {
+        seen(spherule::film::Image::has_alpha(&s.draw()))
     }),
     Call::new("spherule::film::Image::height", |s| {
         seen(spherule::film::Image::height(&s.draw()))
@@ -707,6 +695,9 @@ pub const CALLS: &[Call] = &[
             s.draw(),
             s.draw(),
         ))
+    }),
+    Call::new("spherule::film::Image::opacity", |s| {
+        seen(spherule::film::Image::opacity(&s.draw(), s.draw()))
     }),
     Call::new("spherule::film::Image::pixel", |s| {
         seen(spherule::film::Image::pixel(&s.draw(), s.draw(), s.draw()))
@@ -748,6 +739,9 @@ pub const CALLS: &[Call] = &[
     Call::new("spherule::film::compare::Tolerance as Default", |_| {
         seen(<spherule::film::compare::Tolerance as Default>::default())
     }),
+    Call::new("spherule::film::encode::from_srgb", |s| {
+        seen(spherule::film::encode::from_srgb(s.draw()))
+    }),
     Call::new("spherule::film::encode::srgb", |s| {
         seen(spherule::film::encode::srgb(s.draw()))
     }),
@@ -763,19 +757,75 @@ pub const CALLS: &[Call] = &[
     Call::new("spherule::kernel_module::for_rung", |s| {
         seen(spherule::kernel_module::for_rung(s.draw()))
     }),
-    Call::new("spherule::render::Rendered::is_complete", |s| {
-        seen(spherule::render::Rendered::is_complete(&s.draw()))
+    Call::new("spherule::look::world", |s| {
+        seen(spherule::look::world(&s.many()[..]))
     }),
-    Call::new("spherule::render::Settings as From#0", |s| {
-        seen(<spherule::render::Settings as From<
-            spherule_kernel::shading::Shading,
-        >>::from(s.draw()))
+    Call::new("spherule::random::Random::log_within", |s| {
+        seen(spherule::random::Random::log_within(
+            &mut s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
     }),
-    Call::new("spherule::render::Settings as From#1", |s| {
-        seen(<spherule::render::Settings as From<(
-            spherule_kernel::shading::Shading,
-            spherule_kernel::precision::Rung,
-        )>>::from(s.draw()))
+    Call::new("spherule::random::Random::new", |s| {
+        seen(spherule::random::Random::new(s.draw()))
+    }),
+    Call::new("spherule::random::Random::next_u32", |s| {
+        seen(spherule::random::Random::next_u32(&mut s.draw()))
+    }),
+    Call::new("spherule::random::Random::unit_vec3", |s| {
+        seen(spherule::random::Random::unit_vec3(&mut s.draw()))
+    }),
+    Call::new("spherule::random::Random::vec3", |s| {
+        seen(spherule::random::Random::vec3(
+            &mut s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule::random::Random::within", |s| {
+        seen(spherule::random::Random::within(
+            &mut s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule::read::environment::is_decoding", |_| {
+        seen(spherule::read::environment::is_decoding())
+    }),
+    Call::new("spherule::read::environment::load", |s| {
+        seen(spherule::read::environment::load(&s.path(), s.draw()))
+    }),
+    Call::new("spherule::read::inputs", |_| seen(spherule::read::inputs())),
+    Call::new("spherule::read::is_scene", |s| {
+        seen(spherule::read::is_scene(&s.path()))
+    }),
+    Call::new("spherule::read::particles::Format::load", |s| {
+        seen(spherule::read::particles::Format::load(
+            &s.draw(),
+            &s.path(),
+        ))
+    }),
+    Call::new("spherule::read::particles::Format::of", |s| {
+        seen(spherule::read::particles::Format::of(&s.path()))
+    }),
+    Call::new("spherule::read::particles::elements::by_number", |s| {
+        seen(spherule::read::particles::elements::by_number(s.draw()))
+    }),
+    Call::new("spherule::read::particles::elements::by_symbol", |s| {
+        seen(spherule::read::particles::elements::by_symbol(&s.text()))
+    }),
+    Call::new("spherule::read::particles::extensions", |_| {
+        seen(spherule::read::particles::extensions())
+    }),
+    Call::new("spherule::read::particles::pdb::parse", |s| {
+        seen(spherule::read::particles::pdb::parse(&s.file("pdb")))
+    }),
+    Call::new("spherule::read::particles::xyz::parse", |s| {
+        seen(spherule::read::particles::xyz::parse(&s.file("xyz")))
+    }),
+    Call::new("spherule::read::toml::parse", |s| {
+        seen(spherule::read::toml::parse(&s.path(), s.file("toml")))
     }),
     Call::new("spherule::render::cost::frames", |s| {
         seen(spherule::render::cost::frames(s.draw()))
@@ -863,6 +913,9 @@ pub const CALLS: &[Call] = &[
         seen(spherule::render::gpu::time(s.gpu(), &s.launch(), &s.draw()))
     })
     .on_gpu(),
+    Call::new("spherule::render::launch::whole_image", |s| {
+        seen(spherule::render::whole_image(&s.draw()))
+    }),
     Call::new("spherule::render::pace::Pace::first_on", |s| {
         seen(spherule::render::pace::Pace::first_on(s.gpu()))
     })
@@ -888,18 +941,6 @@ pub const CALLS: &[Call] = &[
             &s.draw(),
             s.few(),
             s.draw(),
-            s.draw(),
-            s.draw(),
-        ))
-    }),
-    Call::new("spherule::render::paths::EffectChoice::compiled", |s| {
-        seen(spherule::render::paths::EffectChoice::compiled(
-            s.draw(),
-            s.draw(),
-        ))
-    }),
-    Call::new("spherule::render::paths::EffectChoice::shown", |s| {
-        seen(spherule::render::paths::EffectChoice::shown(
             s.draw(),
             s.draw(),
         ))
@@ -953,8 +994,25 @@ pub const CALLS: &[Call] = &[
             spherule::render::QUIET,
         ))
     }),
-    Call::new("spherule::render::whole_image", |s| {
-        seen(spherule::render::whole_image(&s.draw()))
+    Call::new("spherule::render::rendered::Rendered::is_complete", |s| {
+        seen(spherule::render::Rendered::is_complete(&s.draw()))
+    }),
+    Call::new("spherule::render::settings::EffectChoice::compiled", |s| {
+        seen(spherule::render::EffectChoice::compiled(s.draw(), s.draw()))
+    }),
+    Call::new("spherule::render::settings::EffectChoice::shown", |s| {
+        seen(spherule::render::EffectChoice::shown(s.draw(), s.draw()))
+    }),
+    Call::new("spherule::render::settings::Settings as From#0", |s| {
+        seen(<spherule::render::Settings as From<
+            spherule_kernel::shading::Shading,
+        >>::from(s.draw()))
+    }),
+    Call::new("spherule::render::settings::Settings as From#1", |s| {
+        seen(<spherule::render::Settings as From<(
+            spherule_kernel::shading::Shading,
+            spherule_kernel::precision::Rung,
+        )>>::from(s.draw()))
     }),
     Call::new("spherule::scene::Scene::aspect", |s| {
         seen(spherule::scene::Scene::aspect(&s.draw()))
@@ -979,24 +1037,6 @@ pub const CALLS: &[Call] = &[
     }),
     Call::new("spherule::scene::Scene::view_or_framed", |s| {
         seen(spherule::scene::Scene::view_or_framed(&s.draw()))
-    }),
-    Call::new("spherule::scene::environment::is_decoding", |_| {
-        seen(spherule::scene::environment::is_decoding())
-    }),
-    Call::new("spherule::scene::environment::load", |s| {
-        seen(spherule::scene::environment::load(&s.path(), s.draw()))
-    }),
-    Call::new("spherule::scene::formats::Format::has_atoms", |s| {
-        seen(spherule::scene::formats::Format::has_atoms(&s.draw()))
-    }),
-    Call::new("spherule::scene::formats::Format::of", |s| {
-        seen(spherule::scene::formats::Format::of(&s.path()))
-    }),
-    Call::new("spherule::scene::formats::extensions", |s| {
-        seen(spherule::scene::formats::extensions(s.draw()))
-    }),
-    Call::new("spherule::scene::formats::inputs", |_| {
-        seen(spherule::scene::formats::inputs())
     }),
     Call::new("spherule::scene::limits::Range as Display", |s| {
         seen(s.draw::<spherule::scene::limits::Range>().to_string())
@@ -1023,21 +1063,6 @@ pub const CALLS: &[Call] = &[
             s.draw(),
         ))
     }),
-    Call::new("spherule::scene::molecule::elements::by_number", |s| {
-        seen(spherule::scene::molecule::elements::by_number(s.draw()))
-    }),
-    Call::new("spherule::scene::molecule::elements::by_symbol", |s| {
-        seen(spherule::scene::molecule::elements::by_symbol(&s.text()))
-    }),
-    Call::new("spherule::scene::molecule::pdb::parse", |s| {
-        seen(spherule::scene::molecule::pdb::parse(&s.file("pdb")))
-    }),
-    Call::new("spherule::scene::molecule::world", |s| {
-        seen(spherule::scene::molecule::world(&s.many()[..]))
-    }),
-    Call::new("spherule::scene::molecule::xyz::parse", |s| {
-        seen(spherule::scene::molecule::xyz::parse(&s.file("xyz")))
-    }),
     Call::new("spherule::scene::surroundings::Sampling as Default", |_| {
         seen(<spherule::scene::surroundings::Sampling as Default>::default())
     }),
@@ -1046,46 +1071,6 @@ pub const CALLS: &[Call] = &[
     }),
     Call::new("spherule::scene::surroundings::Sun::radiance", |s| {
         seen(spherule::scene::surroundings::Sun::radiance(&s.draw()))
-    }),
-    Call::new("spherule::scene::toml_file::parse", |s| {
-        seen(spherule::scene::toml_file::parse(&s.path(), s.file("toml")))
-    }),
-    Call::new("spherule::scene::tree::Acceleration::min_spheres", |s| {
-        seen(spherule::scene::tree::Acceleration::min_spheres(
-            s.draw(),
-            s.draw(),
-        ))
-    }),
-    Call::new("spherule::scene::tree::Nodes as Deref", |s| {
-        seen(std::ops::Deref::deref(
-            &s.draw::<spherule::scene::tree::Nodes>(),
-        ))
-    }),
-    Call::new("spherule::scene::tree::Nodes::tree", |s| {
-        seen(spherule::scene::tree::Nodes::tree(&s.draw()))
-    }),
-    Call::new("spherule::scene::tree::Tree::sort", |s| {
-        seen(spherule::scene::tree::Tree::sort(
-            &s.draw(),
-            &s.many::<u32>()[..],
-        ))
-    }),
-    Call::new("spherule::scene::tree::Tree::sort_world", |s| {
-        seen(spherule::scene::tree::Tree::sort_world(
-            &s.draw(),
-            &s.draw(),
-        ))
-    }),
-    Call::new("spherule::scene::tree::grow", |s| {
-        seen(spherule::scene::tree::grow(
-            &s.many()[..],
-            &s.many()[..],
-            s.draw(),
-            s.draw(),
-        ))
-    }),
-    Call::new("spherule::scene::tree::grow_still", |s| {
-        seen(spherule::scene::tree::grow_still(&s.many()[..], s.draw()))
     }),
     Call::new("spherule::scene::view::View::camera", |s| {
         seen(spherule::scene::view::View::camera(&s.draw(), s.draw()))
@@ -1222,6 +1207,190 @@ pub const CALLS: &[Call] = &[
         ))
     })
     .on_gpu(),
+    Call::new("spherule::ulp::distance", |s| {
+        seen(spherule::ulp::distance(s.draw(), s.draw()))
+    }),
+    Call::new("spherule::ulp::shown", |s| {
+        seen(spherule::ulp::shown(s.draw()))
+    }),
+    Call::new(
+        "spherule_kernel::accel::brute::MovingSpheres as spherule_kernel::accel::brute::Spheres::count",
+        |s| {
+            seen(<spherule_kernel::accel::brute::MovingSpheres as spherule_kernel::accel::brute::Spheres>::count(&s.draw::<odd::OddMovingSpheres>().get()))
+        },
+    ),
+    Call::new("spherule_kernel::accel::brute::MovingSpheres::read", |s| {
+        seen(spherule_kernel::accel::brute::MovingSpheres::read(
+            &s.draw::<odd::OddMovingSpheres>().get(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::accel::brute::is_occluded#0", |s| {
+        seen(spherule_kernel::accel::brute::is_occluded(
+            s.draw(),
+            &s.draw(),
+            &s.many::<spherule_kernel::Sphere>()[..],
+        ))
+    }),
+    Call::new("spherule_kernel::accel::brute::is_occluded#1", |s| {
+        seen(spherule_kernel::accel::brute::is_occluded(
+            s.draw(),
+            &s.draw(),
+            &s.draw::<odd::OddMovingSpheres>().get(),
+        ))
+    }),
+    Call::new("spherule_kernel::accel::brute::nearest_hit", |s| {
+        seen(spherule_kernel::accel::brute::nearest_hit(
+            &s.draw(),
+            &s.many()[..],
+        ))
+    }),
+    Call::new("spherule_kernel::accel::brute::nearest_hit_in#0", |s| {
+        seen(spherule_kernel::accel::brute::nearest_hit_in(
+            s.draw(),
+            &s.draw(),
+            &s.many::<spherule_kernel::Sphere>()[..],
+            s.draw(),
+            s.few(),
+        ))
+    }),
+    Call::new("spherule_kernel::accel::brute::nearest_hit_in#1", |s| {
+        seen(spherule_kernel::accel::brute::nearest_hit_in(
+            s.draw(),
+            &s.draw(),
+            &s.draw::<odd::OddMovingSpheres>().get(),
+            s.draw(),
+            s.few(),
+        ))
+    }),
+    Call::new("spherule_kernel::accel::node::Extent::of_node", |s| {
+        seen(spherule_kernel::accel::node::Extent::of_node(&s.draw()))
+    }),
+    Call::new("spherule_kernel::accel::node::Extent::to_node", |s| {
+        seen(spherule_kernel::accel::node::Extent::to_node(s.draw()))
+    }),
+    Call::new("spherule_kernel::accel::node::Extent::widening", |s| {
+        seen(spherule_kernel::accel::node::Extent::widening(
+            &s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::accel::node::Node::all_spheres", |s| {
+        seen(spherule_kernel::accel::node::Node::all_spheres(&s.draw()))
+    }),
+    Call::new("spherule_kernel::accel::node::Node::child", |s| {
+        seen(spherule_kernel::accel::node::Node::child(
+            &s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::accel::node::Node::has_nodes", |s| {
+        seen(spherule_kernel::accel::node::Node::has_nodes(&s.draw()))
+    }),
+    Call::new("spherule_kernel::accel::node::Node::is_node", |s| {
+        seen(spherule_kernel::accel::node::Node::is_node(
+            &s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::accel::node::Node::leaf", |s| {
+        seen(spherule_kernel::accel::node::Node::leaf(
+            &s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::accel::node::Node::lower", |s| {
+        seen(spherule_kernel::accel::node::Node::lower(s.draw()))
+    }),
+    Call::new("spherule_kernel::accel::node::Node::upper", |s| {
+        seen(spherule_kernel::accel::node::Node::upper(s.draw()))
+    }),
+    Call::new("spherule_kernel::accel::node::Tree::is_none", |s| {
+        seen(spherule_kernel::accel::node::Tree::is_none(
+            s.draw::<odd::OddTree>().get(),
+        ))
+    }),
+    Call::new("spherule_kernel::accel::node::Tree::nodes", |s| {
+        seen(spherule_kernel::accel::node::Tree::nodes(
+            s.draw::<odd::OddTree>().get(),
+        ))
+    }),
+    Call::new("spherule_kernel::accel::node::Tree::of", |s| {
+        seen(spherule_kernel::accel::node::Tree::of(&s.many()[..]))
+    }),
+    Call::new("spherule_kernel::accel::slabs::Slabs::of", |s| {
+        seen(spherule_kernel::accel::slabs::Slabs::of(
+            s.draw(),
+            &s.draw(),
+            &s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::accel::slabs::Slabs::widened_end", |s| {
+        seen(spherule_kernel::accel::slabs::Slabs::widened_end(s.draw()))
+    }),
+    Call::new(
+        "spherule_kernel::accel::traversal::OneByOne as spherule_kernel::accel::traversal::Traversal::is_occluded",
+        |s| {
+            seen(<spherule_kernel::accel::traversal::OneByOne as spherule_kernel::accel::traversal::Traversal>::is_occluded(&s.draw::<odd::OddOneByOne>().get(), &s.draw(), &s.draw::<odd::OddMovingSpheres>().get()))
+        },
+    ),
+    Call::new(
+        "spherule_kernel::accel::traversal::OneByOne as spherule_kernel::accel::traversal::Traversal::nearest_hit",
+        |s| {
+            seen(<spherule_kernel::accel::traversal::OneByOne as spherule_kernel::accel::traversal::Traversal>::nearest_hit(&s.draw::<odd::OddOneByOne>().get(), &s.draw(), &s.draw::<odd::OddMovingSpheres>().get()))
+        },
+    ),
+    Call::new("spherule_kernel::accel::walk::is_occluded_in_tree#0", |s| {
+        seen(spherule_kernel::accel::walk::is_occluded_in_tree(
+            s.draw(),
+            &s.draw(),
+            s.draw::<odd::OddTree>().get(),
+            &s.many::<spherule_kernel::Sphere>()[..],
+        ))
+    }),
+    Call::new("spherule_kernel::accel::walk::is_occluded_in_tree#1", |s| {
+        seen(spherule_kernel::accel::walk::is_occluded_in_tree(
+            s.draw(),
+            &s.draw(),
+            s.draw::<odd::OddTree>().get(),
+            &s.draw::<odd::OddMovingSpheres>().get(),
+        ))
+    }),
+    Call::new("spherule_kernel::accel::walk::nearest_hit_in_tree#0", |s| {
+        seen(spherule_kernel::accel::walk::nearest_hit_in_tree(
+            s.draw(),
+            &s.draw(),
+            s.draw::<odd::OddTree>().get(),
+            &s.many::<spherule_kernel::Sphere>()[..],
+        ))
+    }),
+    Call::new("spherule_kernel::accel::walk::nearest_hit_in_tree#1", |s| {
+        seen(spherule_kernel::accel::walk::nearest_hit_in_tree(
+            s.draw(),
+            &s.draw(),
+            s.draw::<odd::OddTree>().get(),
+            &s.draw::<odd::OddMovingSpheres>().get(),
+        ))
+    }),
+    Call::new("spherule_kernel::accel::walk::work_in_tree#0", |s| {
+        seen(spherule_kernel::accel::walk::work_in_tree(
+            s.draw(),
+            s.draw(),
+            &s.draw(),
+            s.draw::<odd::OddTree>().get(),
+            &s.many::<spherule_kernel::Sphere>()[..],
+        ))
+    }),
+    Call::new("spherule_kernel::accel::walk::work_in_tree#1", |s| {
+        seen(spherule_kernel::accel::walk::work_in_tree(
+            s.draw(),
+            s.draw(),
+            &s.draw(),
+            s.draw::<odd::OddTree>().get(),
+            &s.draw::<odd::OddMovingSpheres>().get(),
+        ))
+    }),
     Call::new("spherule_kernel::arithmetic::distill::distill#0", |s| {
         seen(spherule_kernel::arithmetic::distill::distill(
             &mut s.draw::<[f32; 1]>(),
@@ -1380,42 +1549,6 @@ pub const CALLS: &[Call] = &[
     Call::new("spherule_kernel::arithmetic::strict::sub", |s| {
         seen(spherule_kernel::arithmetic::strict::sub(s.draw(), s.draw()))
     }),
-    Call::new("spherule_kernel::bounds::Aim::bounds", |s| {
-        seen(spherule_kernel::bounds::Aim::<f32>::bounds(
-            &s.draw(),
-            s.draw(),
-            s.draw(),
-        ))
-    }),
-    Call::new("spherule_kernel::bounds::Aim::is_out_of_reach", |s| {
-        seen(spherule_kernel::bounds::Aim::<f32>::is_out_of_reach(
-            &s.draw(),
-            &s.draw(),
-            s.draw(),
-            s.draw(),
-        ))
-    }),
-    Call::new("spherule_kernel::bounds::Bounds::is_open", |s| {
-        seen(spherule_kernel::bounds::Bounds::is_open(
-            &s.draw(),
-            s.draw(),
-        ))
-    }),
-    Call::new("spherule_kernel::bounds::Line::aim", |s| {
-        seen(spherule_kernel::bounds::Line::aim(&s.draw()))
-    }),
-    Call::new("spherule_kernel::bounds::Line::bounds", |s| {
-        seen(spherule_kernel::bounds::Line::bounds(&s.draw(), s.draw()))
-    }),
-    Call::new("spherule_kernel::bounds::Line::may_hit", |s| {
-        seen(spherule_kernel::bounds::Line::may_hit(&s.draw(), s.draw()))
-    }),
-    Call::new("spherule_kernel::bounds::Line::of", |s| {
-        seen(spherule_kernel::bounds::Line::of(&s.draw()))
-    }),
-    Call::new("spherule_kernel::bounds::doubt", |s| {
-        seen(spherule_kernel::bounds::doubt::<f32>(s.draw(), s.draw()))
-    }),
     Call::new("spherule_kernel::camera::Camera::film", |s| {
         seen(spherule_kernel::camera::Camera::film(s.draw(), s.draw()))
     }),
@@ -1446,49 +1579,132 @@ pub const CALLS: &[Call] = &[
     Call::new("spherule_kernel::camera::Camera::ray", |s| {
         seen(spherule_kernel::camera::Camera::ray(&s.draw(), s.draw()))
     }),
-    Call::new("spherule_kernel::canary::sing", |s| {
-        seen(spherule_kernel::canary::sing(s.draw()))
+    Call::new("spherule_kernel::color::luminance", |s| {
+        seen(spherule_kernel::color::luminance(s.draw()))
     }),
-    Call::new("spherule_kernel::canary::sing_wide", |s| {
-        seen(spherule_kernel::canary::sing_wide(s.draw()))
-    }),
-    Call::new("spherule_kernel::candidates::Target::may_hit", |s| {
-        seen(spherule_kernel::candidates::Target::<f32>::may_hit(
+    Call::new("spherule_kernel::cull::bounds::Aim::bounds", |s| {
+        seen(spherule_kernel::cull::bounds::Aim::<f32>::bounds(
             &s.draw(),
             s.draw(),
             s.draw(),
         ))
     }),
-    Call::new("spherule_kernel::candidates::Target::of", |s| {
-        seen(spherule_kernel::candidates::Target::<f32>::of(
-            s.draw(),
-            s.draw(),
-        ))
-    }),
-    Call::new("spherule_kernel::candidates::power_of_two_under", |s| {
-        seen(spherule_kernel::candidates::power_of_two_under(s.draw()))
-    }),
-    Call::new("spherule_kernel::cone::Cone::from_vec4", |s| {
-        seen(spherule_kernel::cone::Cone::from_vec4(s.draw()))
-    }),
-    Call::new("spherule_kernel::cone::Cone::none", |_| {
-        seen(spherule_kernel::cone::Cone::none())
-    }),
-    Call::new("spherule_kernel::cone::Cone::of", |s| {
-        seen(spherule_kernel::cone::Cone::of(s.draw(), s.draw()))
-    }),
-    Call::new("spherule_kernel::cone::Cone::to_vec4", |s| {
-        seen(spherule_kernel::cone::Cone::to_vec4(s.draw()))
-    }),
-    Call::new("spherule_kernel::cone::Sight::along", |s| {
-        seen(spherule_kernel::cone::Sight::along(s.draw()))
-    }),
-    Call::new("spherule_kernel::cone::Sight::misses", |s| {
-        seen(spherule_kernel::cone::Sight::misses(
+    Call::new("spherule_kernel::cull::bounds::Aim::is_out_of_reach", |s| {
+        seen(spherule_kernel::cull::bounds::Aim::<f32>::is_out_of_reach(
+            &s.draw(),
             &s.draw(),
             s.draw(),
             s.draw(),
         ))
+    }),
+    Call::new("spherule_kernel::cull::bounds::Bounds::is_open", |s| {
+        seen(spherule_kernel::cull::bounds::Bounds::is_open(
+            &s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::cull::bounds::Line::aim", |s| {
+        seen(spherule_kernel::cull::bounds::Line::aim(&s.draw()))
+    }),
+    Call::new("spherule_kernel::cull::bounds::Line::bounds", |s| {
+        seen(spherule_kernel::cull::bounds::Line::bounds(
+            &s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::cull::bounds::Line::may_hit", |s| {
+        seen(spherule_kernel::cull::bounds::Line::may_hit(
+            &s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::cull::bounds::Line::of", |s| {
+        seen(spherule_kernel::cull::bounds::Line::of(&s.draw()))
+    }),
+    Call::new("spherule_kernel::cull::bounds::doubt", |s| {
+        seen(spherule_kernel::cull::bounds::doubt::<f32>(
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::cull::cone::Cone::from_vec4", |s| {
+        seen(spherule_kernel::cull::cone::Cone::from_vec4(s.draw()))
+    }),
+    Call::new("spherule_kernel::cull::cone::Cone::none", |_| {
+        seen(spherule_kernel::cull::cone::Cone::none())
+    }),
+    Call::new("spherule_kernel::cull::cone::Cone::of", |s| {
+        seen(spherule_kernel::cull::cone::Cone::of(s.draw(), s.draw()))
+    }),
+    Call::new("spherule_kernel::cull::cone::Cone::to_vec4", |s| {
+        seen(spherule_kernel::cull::cone::Cone::to_vec4(s.draw()))
+    }),
+    Call::new("spherule_kernel::cull::cone::Sight::along", |s| {
+        seen(spherule_kernel::cull::cone::Sight::along(s.draw()))
+    }),
+    Call::new("spherule_kernel::cull::cone::Sight::misses", |s| {
+        seen(spherule_kernel::cull::cone::Sight::misses(
+            &s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new(
+        "spherule_kernel::cull::discriminant::Target::may_hit",
+        |s| {
+            seen(spherule_kernel::cull::discriminant::Target::<f32>::may_hit(
+                &s.draw(),
+                s.draw(),
+                s.draw(),
+            ))
+        },
+    ),
+    Call::new("spherule_kernel::cull::discriminant::Target::of", |s| {
+        seen(spherule_kernel::cull::discriminant::Target::<f32>::of(
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new(
+        "spherule_kernel::cull::discriminant::power_of_two_under",
+        |s| {
+            seen(spherule_kernel::cull::discriminant::power_of_two_under(
+                s.draw(),
+            ))
+        },
+    ),
+    Call::new("spherule_kernel::cull::frustum::Frustum::around", |s| {
+        seen(spherule_kernel::cull::frustum::Frustum::around(
+            &s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::cull::frustum::Frustum::misses", |s| {
+        seen(spherule_kernel::cull::frustum::Frustum::misses(
+            &s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::cull::frustum::Frustum::within", |s| {
+        seen(spherule_kernel::cull::frustum::Frustum::within(
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::cull::frustum::Plane::around", |s| {
+        seen(spherule_kernel::cull::frustum::Plane::around(
+            &s.draw(),
+            s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::cull::frustum::Plane::from_vec4", |s| {
+        seen(spherule_kernel::cull::frustum::Plane::from_vec4(s.draw()))
+    }),
+    Call::new("spherule_kernel::cull::frustum::Plane::to_vec4", |s| {
+        seen(spherule_kernel::cull::frustum::Plane::to_vec4(s.draw()))
     }),
     Call::new("spherule_kernel::effects::Effects::and", |s| {
         seen(spherule_kernel::effects::Effects::and(s.draw(), s.draw()))
@@ -1588,20 +1804,6 @@ pub const CALLS: &[Call] = &[
     Call::new("spherule_kernel::film::Pixel::new", |s| {
         seen(spherule_kernel::film::Pixel::new(s.draw(), s.draw()))
     }),
-    Call::new("spherule_kernel::film::render_pixel", |s| {
-        seen(spherule_kernel::film::render_pixel(
-            s.draw(),
-            s.draw(),
-            s.draw(),
-            &s.draw(),
-            s.draw::<odd::OddTree>().get(),
-            &s.many()[..],
-            &s.many()[..],
-            &s.many()[..],
-            s.draw(),
-            &s.draw(),
-        ))
-    }),
     Call::new("spherule_kernel::fog::Fog::phase", |s| {
         seen(spherule_kernel::fog::Fog::phase(&s.draw(), s.draw()))
     }),
@@ -1634,69 +1836,32 @@ pub const CALLS: &[Call] = &[
             s.draw(),
         ))
     }),
-    Call::new("spherule_kernel::frustum::Frustum::around", |s| {
-        seen(spherule_kernel::frustum::Frustum::around(
-            &s.draw(),
+    Call::new("spherule_kernel::gpu::instructions::highest_bit", |s| {
+        seen(spherule_kernel::gpu::instructions::highest_bit(s.draw()))
+    }),
+    Call::new("spherule_kernel::gpu::instructions::inverse_root", |s| {
+        seen(spherule_kernel::gpu::instructions::inverse_root(s.draw()))
+    }),
+    Call::new("spherule_kernel::gpu::instructions::larger", |s| {
+        seen(spherule_kernel::gpu::instructions::larger(
             s.draw(),
             s.draw(),
         ))
     }),
-    Call::new("spherule_kernel::frustum::Frustum::misses", |s| {
-        seen(spherule_kernel::frustum::Frustum::misses(
-            &s.draw(),
-            s.draw(),
-        ))
+    Call::new("spherule_kernel::gpu::instructions::lowest_bit", |s| {
+        seen(spherule_kernel::gpu::instructions::lowest_bit(s.draw()))
     }),
-    Call::new("spherule_kernel::frustum::Frustum::within", |s| {
-        seen(spherule_kernel::frustum::Frustum::within(
+    Call::new("spherule_kernel::gpu::instructions::smaller", |s| {
+        seen(spherule_kernel::gpu::instructions::smaller(
             s.draw(),
             s.draw(),
         ))
-    }),
-    Call::new("spherule_kernel::frustum::Plane::around", |s| {
-        seen(spherule_kernel::frustum::Plane::around(
-            &s.draw(),
-            s.draw(),
-            s.draw(),
-            s.draw(),
-        ))
-    }),
-    Call::new("spherule_kernel::frustum::Plane::from_vec4", |s| {
-        seen(spherule_kernel::frustum::Plane::from_vec4(s.draw()))
-    }),
-    Call::new("spherule_kernel::frustum::Plane::to_vec4", |s| {
-        seen(spherule_kernel::frustum::Plane::to_vec4(s.draw()))
     }),
     Call::new("spherule_kernel::hit::Hit as Default", |_| {
         seen(<spherule_kernel::hit::Hit as Default>::default())
     }),
     Call::new("spherule_kernel::hit::Hit::is_some", |s| {
         seen(spherule_kernel::hit::Hit::is_some(&s.draw()))
-    }),
-    Call::new("spherule_kernel::instructions::highest_bit", |s| {
-        seen(spherule_kernel::instructions::highest_bit(s.draw()))
-    }),
-    Call::new("spherule_kernel::instructions::inverse_root", |s| {
-        seen(spherule_kernel::instructions::inverse_root(s.draw()))
-    }),
-    Call::new("spherule_kernel::instructions::larger", |s| {
-        seen(spherule_kernel::instructions::larger(s.draw(), s.draw()))
-    }),
-    Call::new("spherule_kernel::instructions::lowest_bit", |s| {
-        seen(spherule_kernel::instructions::lowest_bit(s.draw()))
-    }),
-    Call::new("spherule_kernel::instructions::smaller", |s| {
-        seen(spherule_kernel::instructions::smaller(s.draw(), s.draw()))
-    }),
-    Call::new("spherule_kernel::integrate::luminance", |s| {
-        seen(spherule_kernel::integrate::luminance(s.draw()))
-    }),
-    Call::new("spherule_kernel::integrate::trace_pixel", |s| {
-        seen(spherule_kernel::integrate::trace_pixel(
-            &s.draw::<odd::OddScenery>().get(),
-            s.draw(),
-            s.draw(),
-        ))
     }),
     Call::new("spherule_kernel::lane::Lane3::cross", |s| {
         seen(spherule_kernel::lane::Lane3::<f32>::cross(
@@ -1723,9 +1888,6 @@ pub const CALLS: &[Call] = &[
     Call::new("spherule_kernel::lane::Lane3::of", |s| {
         seen(spherule_kernel::lane::Lane3::<f32>::of(s.draw()))
     }),
-    Call::new("spherule_kernel::layout::write", |s| {
-        seen(spherule_kernel::layout::write(&mut s.many()[..]))
-    }),
     Call::new("spherule_kernel::light::Light::environment", |_| {
         seen(spherule_kernel::light::Light::environment())
     }),
@@ -1749,6 +1911,40 @@ pub const CALLS: &[Call] = &[
             s.draw(),
         ))
     }),
+    Call::new(
+        "spherule_kernel::light::sky::Sky::environment_density",
+        |s| {
+            seen(spherule_kernel::light::sky::Sky::environment_density(
+                &s.draw(),
+                s.draw(),
+                &s.many()[..],
+            ))
+        },
+    ),
+    Call::new("spherule_kernel::light::sky::Sky::is_sun", |s| {
+        seen(spherule_kernel::light::sky::Sky::is_sun(
+            &s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::light::sky::Sky::radiance", |s| {
+        seen(spherule_kernel::light::sky::Sky::radiance(
+            &s.draw(),
+            s.draw(),
+            s.draw(),
+            &s.many()[..],
+        ))
+    }),
+    Call::new(
+        "spherule_kernel::light::sky::Sky::sample_environment",
+        |s| {
+            seen(spherule_kernel::light::sky::Sky::sample_environment(
+                &s.draw(),
+                s.draw(),
+                &s.many()[..],
+            ))
+        },
+    ),
     Call::new("spherule_kernel::light::solid_angle", |s| {
         seen(spherule_kernel::light::solid_angle(s.draw()))
     }),
@@ -1779,6 +1975,13 @@ pub const CALLS: &[Call] = &[
             s.draw(),
         ))
     }),
+    Call::new("spherule_kernel::material::Material::plastic", |s| {
+        seen(spherule_kernel::material::Material::plastic(
+            s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
     Call::new("spherule_kernel::material::material_of", |s| {
         seen(spherule_kernel::material::material_of(
             s.draw(),
@@ -1786,122 +1989,284 @@ pub const CALLS: &[Call] = &[
             &s.many()[..],
         ))
     }),
-    Call::new("spherule_kernel::microfacet::RoughMetal::evaluate", |s| {
-        seen(spherule_kernel::microfacet::RoughMetal::evaluate(
-            &s.draw(),
-            s.draw(),
-            &s.many()[..],
-        ))
-    }),
-    Call::new("spherule_kernel::microfacet::RoughMetal::new", |s| {
-        seen(spherule_kernel::microfacet::RoughMetal::new(
-            s.draw(),
-            s.draw(),
-            s.draw(),
-            &s.many()[..],
-        ))
-    }),
-    Call::new("spherule_kernel::microfacet::RoughMetal::sample", |s| {
-        seen(spherule_kernel::microfacet::RoughMetal::sample(
-            &s.draw(),
-            s.draw(),
-            s.draw(),
-        ))
-    }),
-    Call::new("spherule_kernel::microfacet::albedo::Albedo::of", |s| {
-        seen(spherule_kernel::microfacet::Albedo::of(s.draw(), s.draw()))
-    }),
-    Call::new("spherule_kernel::microfacet::albedo::Albedo::table", |_| {
-        seen(spherule_kernel::microfacet::Albedo::table())
-    }),
-    Call::new("spherule_kernel::microfacet::sample_visible", |s| {
-        seen(spherule_kernel::microfacet::sample_visible(
-            s.draw(),
-            s.draw(),
-            s.draw(),
-        ))
-    }),
-    Call::new("spherule_kernel::microfacet::schlick", |s| {
-        seen(spherule_kernel::microfacet::schlick(s.draw(), s.draw()))
-    }),
     Call::new(
-        "spherule_kernel::nearest::MovingSpheres as spherule_kernel::nearest::Spheres::count",
+        "spherule_kernel::material::microfacet::RoughMetal::evaluate",
         |s| {
-            seen(<spherule_kernel::nearest::MovingSpheres as spherule_kernel::nearest::Spheres>::count(&s.draw::<odd::OddMovingSpheres>().get()))
+            seen(spherule_kernel::material::microfacet::RoughMetal::evaluate(
+                &s.draw(),
+                s.draw(),
+                &s.many()[..],
+            ))
         },
     ),
-    Call::new("spherule_kernel::nearest::MovingSpheres::read", |s| {
-        seen(spherule_kernel::nearest::MovingSpheres::read(
-            &s.draw::<odd::OddMovingSpheres>().get(),
+    Call::new(
+        "spherule_kernel::material::microfacet::RoughMetal::new",
+        |s| {
+            seen(spherule_kernel::material::microfacet::RoughMetal::new(
+                s.draw(),
+                s.draw(),
+                s.draw(),
+                &s.many()[..],
+            ))
+        },
+    ),
+    Call::new(
+        "spherule_kernel::material::microfacet::RoughMetal::sample",
+        |s| {
+            seen(spherule_kernel::material::microfacet::RoughMetal::sample(
+                &s.draw(),
+                s.draw(),
+                s.draw(),
+            ))
+        },
+    ),
+    Call::new("spherule_kernel::material::microfacet::Shares::mean", |s| {
+        seen(spherule_kernel::material::microfacet::Shares::mean(
+            &s.many()[..],
             s.draw(),
         ))
     }),
-    Call::new("spherule_kernel::nearest::is_occluded#0", |s| {
-        seen(spherule_kernel::nearest::is_occluded(
+    Call::new("spherule_kernel::material::microfacet::Shares::of", |s| {
+        seen(spherule_kernel::material::microfacet::Shares::of(
             s.draw(),
-            &s.draw(),
-            &s.many::<spherule_kernel::Sphere>()[..],
+            s.draw(),
         ))
     }),
-    Call::new("spherule_kernel::nearest::is_occluded#1", |s| {
-        seen(spherule_kernel::nearest::is_occluded(
+    Call::new(
+        "spherule_kernel::material::microfacet::Shares::towards",
+        |s| {
+            seen(spherule_kernel::material::microfacet::Shares::towards(
+                &s.many()[..],
+                s.draw(),
+                s.draw(),
+            ))
+        },
+    ),
+    Call::new(
+        "spherule_kernel::material::microfacet::albedo::Albedo::of",
+        |s| {
+            seen(spherule_kernel::material::microfacet::Albedo::of(
+                s.draw(),
+                s.draw(),
+            ))
+        },
+    ),
+    Call::new(
+        "spherule_kernel::material::microfacet::albedo::Albedo::table",
+        |_| seen(spherule_kernel::material::microfacet::Albedo::table()),
+    ),
+    Call::new(
+        "spherule_kernel::material::microfacet::sample_visible",
+        |s| {
+            seen(spherule_kernel::material::microfacet::sample_visible(
+                s.draw(),
+                s.draw(),
+                s.draw(),
+            ))
+        },
+    ),
+    Call::new("spherule_kernel::material::microfacet::schlick", |s| {
+        seen(spherule_kernel::material::microfacet::schlick(
             s.draw(),
-            &s.draw(),
-            &s.draw::<odd::OddMovingSpheres>().get(),
+            s.draw(),
         ))
     }),
-    Call::new("spherule_kernel::nearest::nearest_hit", |s| {
-        seen(spherule_kernel::nearest::nearest_hit(
-            &s.draw(),
+    Call::new("spherule_kernel::material::optics::Fresnel::refract", |s| {
+        seen(spherule_kernel::material::optics::Fresnel::refract(
+            s.draw(),
+            s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new(
+        "spherule_kernel::material::optics::Incidence::fresnel",
+        |s| {
+            seen(spherule_kernel::material::optics::Incidence::fresnel(
+                s.draw(),
+            ))
+        },
+    ),
+    Call::new(
+        "spherule_kernel::material::optics::Incidence::squared_cosine_transmitted",
+        |s| {
+            seen(spherule_kernel::material::optics::Incidence::squared_cosine_transmitted(s.draw()))
+        },
+    ),
+    Call::new("spherule_kernel::material::optics::reflect", |s| {
+        seen(spherule_kernel::material::optics::reflect(
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new(
+        "spherule_kernel::material::plastic::Plastic::evaluate",
+        |s| {
+            seen(spherule_kernel::material::plastic::Plastic::evaluate(
+                &s.draw(),
+                s.draw(),
+                &s.many()[..],
+            ))
+        },
+    ),
+    Call::new("spherule_kernel::material::plastic::Plastic::new", |s| {
+        seen(spherule_kernel::material::plastic::Plastic::new(
+            s.draw(),
+            s.draw(),
+            s.draw(),
+            s.draw(),
             &s.many()[..],
         ))
     }),
-    Call::new("spherule_kernel::nearest::nearest_hit_in#0", |s| {
-        seen(spherule_kernel::nearest::nearest_hit_in(
-            s.draw(),
+    Call::new("spherule_kernel::material::plastic::Plastic::sample", |s| {
+        seen(spherule_kernel::material::plastic::Plastic::sample(
             &s.draw(),
-            &s.many::<spherule_kernel::Sphere>()[..],
             s.draw(),
-            s.few(),
+            s.draw(),
         ))
     }),
-    Call::new("spherule_kernel::nearest::nearest_hit_in#1", |s| {
-        seen(spherule_kernel::nearest::nearest_hit_in(
-            s.draw(),
+    Call::new("spherule_kernel::path::random::Sampler::at_vertex", |s| {
+        seen(spherule_kernel::path::random::Sampler::at_vertex(
             &s.draw(),
-            &s.draw::<odd::OddMovingSpheres>().get(),
             s.draw(),
-            s.few(),
         ))
     }),
-    Call::new("spherule_kernel::optics::Fresnel::refract", |s| {
-        seen(spherule_kernel::optics::Fresnel::refract(
-            s.draw(),
+    Call::new("spherule_kernel::path::random::Sampler::new", |s| {
+        seen(spherule_kernel::path::random::Sampler::new(
             s.draw(),
             s.draw(),
             s.draw(),
         ))
     }),
-    Call::new("spherule_kernel::optics::Incidence::fresnel", |s| {
-        seen(spherule_kernel::optics::Incidence::fresnel(s.draw()))
+    Call::new("spherule_kernel::path::random::Sampler::pair", |s| {
+        seen(spherule_kernel::path::random::Sampler::pair(
+            &s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::path::random::Sampler::single", |s| {
+        seen(spherule_kernel::path::random::Sampler::single(
+            &s.draw(),
+            s.draw(),
+        ))
     }),
     Call::new(
-        "spherule_kernel::optics::Incidence::squared_cosine_transmitted",
-        |s| seen(spherule_kernel::optics::Incidence::squared_cosine_transmitted(s.draw())),
+        "spherule_kernel::path::random::VertexNumbers::choice",
+        |s| {
+            seen(spherule_kernel::path::random::VertexNumbers::choice(
+                &s.draw(),
+            ))
+        },
     ),
-    Call::new("spherule_kernel::optics::reflect", |s| {
-        seen(spherule_kernel::optics::reflect(s.draw(), s.draw()))
+    Call::new(
+        "spherule_kernel::path::random::VertexNumbers::direction",
+        |s| {
+            seen(spherule_kernel::path::random::VertexNumbers::direction(
+                &s.draw(),
+            ))
+        },
+    ),
+    Call::new(
+        "spherule_kernel::path::random::VertexNumbers::roulette",
+        |s| {
+            seen(spherule_kernel::path::random::VertexNumbers::roulette(
+                &s.draw(),
+            ))
+        },
+    ),
+    Call::new(
+        "spherule_kernel::path::random::VertexNumbers::towards_light",
+        |s| {
+            seen(spherule_kernel::path::random::VertexNumbers::towards_light(
+                &s.draw(),
+            ))
+        },
+    ),
+    Call::new("spherule_kernel::path::random::VertexNumbers::way", |s| {
+        seen(spherule_kernel::path::random::VertexNumbers::way(&s.draw()))
+    }),
+    Call::new(
+        "spherule_kernel::path::random::VertexNumbers::which_light",
+        |s| {
+            seen(spherule_kernel::path::random::VertexNumbers::which_light(
+                &s.draw(),
+            ))
+        },
+    ),
+    Call::new("spherule_kernel::path::sampling::cone", |s| {
+        seen(spherule_kernel::path::sampling::cone(
+            s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::path::sampling::cone_density", |s| {
+        seen(spherule_kernel::path::sampling::cone_density(s.draw()))
+    }),
+    Call::new("spherule_kernel::path::sampling::cosine_density", |s| {
+        seen(spherule_kernel::path::sampling::cosine_density(s.draw()))
+    }),
+    Call::new("spherule_kernel::path::sampling::cosine_hemisphere", |s| {
+        seen(spherule_kernel::path::sampling::cosine_hemisphere(
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::path::sampling::disc", |s| {
+        seen(spherule_kernel::path::sampling::disc(s.draw()))
+    }),
+    Call::new("spherule_kernel::path::sampling::power_heuristic", |s| {
+        seen(spherule_kernel::path::sampling::power_heuristic(
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::path::sampling::tangents", |s| {
+        seen(spherule_kernel::path::sampling::tangents(s.draw()))
+    }),
+    Call::new("spherule_kernel::path::sampling::uniform_sphere", |s| {
+        seen(spherule_kernel::path::sampling::uniform_sphere(s.draw()))
+    }),
+    Call::new("spherule_kernel::path::step::trace_pixel", |s| {
+        seen(spherule_kernel::path::trace_pixel(
+            &s.draw::<odd::OddScenery>().get(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::pixel::render_pixel", |s| {
+        seen(spherule_kernel::pixel::render_pixel(
+            s.draw(),
+            s.draw(),
+            s.draw(),
+            &s.draw(),
+            s.draw::<odd::OddTree>().get(),
+            &s.many()[..],
+            &s.many()[..],
+            &s.many()[..],
+            s.draw(),
+            &s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::precision::Rung::is_bounded", |s| {
+        seen(spherule_kernel::precision::Rung::is_bounded(s.draw()))
     }),
     Call::new("spherule_kernel::precision::Rung::name", |s| {
         seen(spherule_kernel::precision::Rung::name(s.draw()))
+    }),
+    Call::new("spherule_kernel::precision::Rung::needs", |s| {
+        seen(spherule_kernel::precision::Rung::needs(s.draw()))
+    }),
+    Call::new("spherule_kernel::precision::Rung::summary", |s| {
+        seen(spherule_kernel::precision::Rung::summary(s.draw()))
     }),
     Call::new("spherule_kernel::precision::Rung::to_u32", |s| {
         seen(spherule_kernel::precision::Rung::to_u32(s.draw()))
     }),
     Call::new(
-        "spherule_kernel::precision::certified::Certified as spherule_kernel::precision::Precision::intersect",
+        "spherule_kernel::precision::certified::Certified as spherule_kernel::precision::root::Precision::intersect",
         |s| {
-            seen(<spherule_kernel::precision::certified::Certified as spherule_kernel::precision::Precision>::intersect(s.draw(), &s.draw()))
+            seen(<spherule_kernel::precision::certified::Certified as spherule_kernel::precision::root::Precision>::intersect(s.draw(), &s.draw()))
         },
     ),
     Call::new(
@@ -1913,17 +2278,10 @@ pub const CALLS: &[Call] = &[
             ))
         },
     ),
-    Call::new("spherule_kernel::precision::choose_root", |s| {
-        seen(spherule_kernel::precision::choose_root(
-            s.draw(),
-            s.draw(),
-            &s.draw(),
-        ))
-    }),
     Call::new(
-        "spherule_kernel::precision::compensated::Compensated as spherule_kernel::precision::Precision::intersect",
+        "spherule_kernel::precision::compensated::Compensated as spherule_kernel::precision::root::Precision::intersect",
         |s| {
-            seen(<spherule_kernel::precision::compensated::Compensated as spherule_kernel::precision::Precision>::intersect(s.draw(), &s.draw()))
+            seen(<spherule_kernel::precision::compensated::Compensated as spherule_kernel::precision::root::Precision>::intersect(s.draw(), &s.draw()))
         },
     ),
     Call::new(
@@ -1956,9 +2314,9 @@ pub const CALLS: &[Call] = &[
         |s| seen(spherule_kernel::precision::compensated::Quadratic::size_is_certain(&s.draw())),
     ),
     Call::new(
-        "spherule_kernel::precision::double::Double as spherule_kernel::precision::Precision::intersect",
+        "spherule_kernel::precision::double::Double as spherule_kernel::precision::root::Precision::intersect",
         |s| {
-            seen(<spherule_kernel::precision::double::Double as spherule_kernel::precision::Precision>::intersect(s.draw(), &s.draw()))
+            seen(<spherule_kernel::precision::double::Double as spherule_kernel::precision::root::Precision>::intersect(s.draw(), &s.draw()))
         },
     ),
     Call::new(
@@ -2001,6 +2359,16 @@ pub const CALLS: &[Call] = &[
             s.draw(),
             &s.draw(),
         ))
+    }),
+    Call::new("spherule_kernel::precision::intersect_at_once", |s| {
+        seen(spherule_kernel::precision::intersect_at_once(
+            s.draw(),
+            s.draw(),
+            &s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::precision::is_lazy", |s| {
+        seen(spherule_kernel::precision::is_lazy(s.draw()))
     }),
     Call::new(
         "spherule_kernel::precision::robust::Quadratic::inner",
@@ -2048,31 +2416,66 @@ pub const CALLS: &[Call] = &[
         },
     ),
     Call::new(
-        "spherule_kernel::precision::robust::Robust as spherule_kernel::precision::Precision::intersect",
+        "spherule_kernel::precision::robust::Robust as spherule_kernel::precision::root::Precision::intersect",
         |s| {
-            seen(<spherule_kernel::precision::robust::Robust as spherule_kernel::precision::Precision>::intersect(s.draw(), &s.draw()))
+            seen(<spherule_kernel::precision::robust::Robust as spherule_kernel::precision::root::Precision>::intersect(s.draw(), &s.draw()))
         },
     ),
     Call::new(
-        "spherule_kernel::precision::textbook::Textbook as spherule_kernel::precision::Precision::intersect",
+        "spherule_kernel::precision::robust::Robust as spherule_kernel::precision::root::Precision::widening",
         |s| {
-            seen(<spherule_kernel::precision::textbook::Textbook as spherule_kernel::precision::Precision>::intersect(s.draw(), &s.draw()))
+            seen(<spherule_kernel::precision::robust::Robust as spherule_kernel::precision::root::Precision>::widening(s.draw(), s.draw()))
         },
     ),
-    Call::new("spherule_kernel::random::Sampler::new", |s| {
-        seen(spherule_kernel::random::Sampler::new(
+    Call::new("spherule_kernel::precision::root::choose_root", |s| {
+        seen(spherule_kernel::precision::root::choose_root(
+            s.draw(),
+            s.draw(),
+            &s.draw(),
+        ))
+    }),
+    Call::new(
+        "spherule_kernel::precision::textbook::Textbook as spherule_kernel::precision::root::Precision::intersect",
+        |s| {
+            seen(<spherule_kernel::precision::textbook::Textbook as spherule_kernel::precision::root::Precision>::intersect(s.draw(), &s.draw()))
+        },
+    ),
+    Call::new(
+        "spherule_kernel::precision::textbook::Textbook as spherule_kernel::precision::root::Precision::widening",
+        |s| {
+            seen(<spherule_kernel::precision::textbook::Textbook as spherule_kernel::precision::root::Precision>::widening(s.draw(), s.draw()))
+        },
+    ),
+    Call::new("spherule_kernel::precision::widening", |s| {
+        seen(spherule_kernel::precision::widening(
             s.draw(),
             s.draw(),
             s.draw(),
         ))
     }),
-    Call::new("spherule_kernel::random::Sampler::pair", |s| {
-        seen(spherule_kernel::random::Sampler::pair(&s.draw(), s.draw()))
+    Call::new("spherule_kernel::probe::canary::sing", |s| {
+        seen(spherule_kernel::probe::canary::sing(s.draw()))
     }),
-    Call::new("spherule_kernel::random::Sampler::single", |s| {
-        seen(spherule_kernel::random::Sampler::single(
+    Call::new("spherule_kernel::probe::canary::sing_wide", |s| {
+        seen(spherule_kernel::probe::canary::sing_wide(s.draw()))
+    }),
+    Call::new("spherule_kernel::probe::glass_walk::walk_inside", |s| {
+        seen(spherule_kernel::probe::glass_walk::walk_inside(
+            s.draw(),
             &s.draw(),
             s.draw(),
+            s.draw(),
+            s.few(),
+        ))
+    }),
+    Call::new("spherule_kernel::probe::layout::write", |s| {
+        seen(spherule_kernel::probe::layout::write(&mut s.many()[..]))
+    }),
+    Call::new("spherule_kernel::probe::throughput::products", |s| {
+        seen(spherule_kernel::probe::throughput::products(
+            s.draw(),
+            s.draw(),
+            s.few(),
         ))
     }),
     Call::new("spherule_kernel::ray::Ray::at", |s| {
@@ -2092,79 +2495,29 @@ pub const CALLS: &[Call] = &[
             s.draw(),
         ))
     }),
-    Call::new("spherule_kernel::sampling::cone", |s| {
-        seen(spherule_kernel::sampling::cone(
-            s.draw(),
-            s.draw(),
-            s.draw(),
-        ))
-    }),
-    Call::new("spherule_kernel::sampling::cone_density", |s| {
-        seen(spherule_kernel::sampling::cone_density(s.draw()))
-    }),
-    Call::new("spherule_kernel::sampling::cosine_density", |s| {
-        seen(spherule_kernel::sampling::cosine_density(s.draw()))
-    }),
-    Call::new("spherule_kernel::sampling::cosine_hemisphere", |s| {
-        seen(spherule_kernel::sampling::cosine_hemisphere(
-            s.draw(),
-            s.draw(),
-        ))
-    }),
-    Call::new("spherule_kernel::sampling::disc", |s| {
-        seen(spherule_kernel::sampling::disc(s.draw()))
-    }),
-    Call::new("spherule_kernel::sampling::power_heuristic", |s| {
-        seen(spherule_kernel::sampling::power_heuristic(
-            s.draw(),
-            s.draw(),
-        ))
-    }),
-    Call::new("spherule_kernel::sampling::tangents", |s| {
-        seen(spherule_kernel::sampling::tangents(s.draw()))
-    }),
-    Call::new("spherule_kernel::sampling::uniform_sphere", |s| {
-        seen(spherule_kernel::sampling::uniform_sphere(s.draw()))
+    Call::new("spherule_kernel::shading::Quantity::has_background", |s| {
+        seen(spherule_kernel::shading::Quantity::has_background(s.draw()))
     }),
     Call::new("spherule_kernel::shading::Shading::is_data", |s| {
         seen(spherule_kernel::shading::Shading::is_data(s.draw()))
     }),
+    Call::new("spherule_kernel::shading::Shading::name", |s| {
+        seen(spherule_kernel::shading::Shading::name(s.draw()))
+    }),
+    Call::new("spherule_kernel::shading::Shading::quantity", |s| {
+        seen(spherule_kernel::shading::Shading::quantity(s.draw()))
+    }),
+    Call::new("spherule_kernel::shading::Shading::summary", |s| {
+        seen(spherule_kernel::shading::Shading::summary(s.draw()))
+    }),
     Call::new("spherule_kernel::shading::Shading::to_u32", |s| {
         seen(spherule_kernel::shading::Shading::to_u32(s.draw()))
     }),
+    Call::new("spherule_kernel::shading::index_of", |s| {
+        seen(spherule_kernel::shading::index_of(s.draw()))
+    }),
     Call::new("spherule_kernel::shading::shade", |s| {
-        seen(spherule_kernel::shading::shade(
-            s.draw(),
-            &s.draw(),
-            s.draw(),
-            &s.draw(),
-            &s.draw(),
-        ))
-    }),
-    Call::new("spherule_kernel::sky::Sky::environment_density", |s| {
-        seen(spherule_kernel::sky::Sky::environment_density(
-            &s.draw(),
-            s.draw(),
-            &s.many()[..],
-        ))
-    }),
-    Call::new("spherule_kernel::sky::Sky::is_sun", |s| {
-        seen(spherule_kernel::sky::Sky::is_sun(&s.draw(), s.draw()))
-    }),
-    Call::new("spherule_kernel::sky::Sky::radiance", |s| {
-        seen(spherule_kernel::sky::Sky::radiance(
-            &s.draw(),
-            s.draw(),
-            s.draw(),
-            &s.many()[..],
-        ))
-    }),
-    Call::new("spherule_kernel::sky::Sky::sample_environment", |s| {
-        seen(spherule_kernel::sky::Sky::sample_environment(
-            &s.draw(),
-            s.draw(),
-            &s.many()[..],
-        ))
+        seen(spherule_kernel::shading::shade(s.draw(), s.draw()))
     }),
     Call::new("spherule_kernel::sphere::Sphere::center", |s| {
         seen(spherule_kernel::sphere::Sphere::center(&s.draw()))
@@ -2200,6 +2553,12 @@ pub const CALLS: &[Call] = &[
             s.draw(),
         ))
     }),
+    Call::new("spherule_kernel::surface::Surface::facing", |s| {
+        seen(spherule_kernel::surface::Surface::facing(
+            &s.draw(),
+            s.draw(),
+        ))
+    }),
     Call::new("spherule_kernel::surface::Surface::leave", |s| {
         seen(spherule_kernel::surface::Surface::leave(
             &s.draw(),
@@ -2209,165 +2568,14 @@ pub const CALLS: &[Call] = &[
     Call::new("spherule_kernel::surface::unit", |s| {
         seen(spherule_kernel::surface::unit(s.draw()))
     }),
-    Call::new("spherule_kernel::throughput::products", |s| {
-        seen(spherule_kernel::throughput::products(
-            s.draw(),
-            s.draw(),
-            s.few(),
-        ))
-    }),
-    Call::new(
-        "spherule_kernel::traversal::OneByOne as spherule_kernel::traversal::Traversal::is_occluded",
-        |s| {
-            seen(<spherule_kernel::traversal::OneByOne as spherule_kernel::traversal::Traversal>::is_occluded(&s.draw::<odd::OddOneByOne>().get(), &s.draw(), &s.draw::<odd::OddMovingSpheres>().get()))
-        },
-    ),
-    Call::new(
-        "spherule_kernel::traversal::OneByOne as spherule_kernel::traversal::Traversal::nearest_hit",
-        |s| {
-            seen(<spherule_kernel::traversal::OneByOne as spherule_kernel::traversal::Traversal>::nearest_hit(&s.draw::<odd::OddOneByOne>().get(), &s.draw(), &s.draw::<odd::OddMovingSpheres>().get()))
-        },
-    ),
-    Call::new("spherule_kernel::tree::Extent::of_node", |s| {
-        seen(spherule_kernel::tree::Extent::of_node(&s.draw()))
-    }),
-    Call::new("spherule_kernel::tree::Extent::to_node", |s| {
-        seen(spherule_kernel::tree::Extent::to_node(s.draw()))
-    }),
-    Call::new("spherule_kernel::tree::Extent::widening", |s| {
-        seen(spherule_kernel::tree::Extent::widening(
-            &s.draw(),
-            s.draw(),
-            s.draw(),
-        ))
-    }),
-    Call::new("spherule_kernel::tree::Node::all_spheres", |s| {
-        seen(spherule_kernel::tree::Node::all_spheres(&s.draw()))
-    }),
-    Call::new("spherule_kernel::tree::Node::child", |s| {
-        seen(spherule_kernel::tree::Node::child(&s.draw(), s.draw()))
-    }),
-    Call::new("spherule_kernel::tree::Node::has_nodes", |s| {
-        seen(spherule_kernel::tree::Node::has_nodes(&s.draw()))
-    }),
-    Call::new("spherule_kernel::tree::Node::is_node", |s| {
-        seen(spherule_kernel::tree::Node::is_node(&s.draw(), s.draw()))
-    }),
-    Call::new("spherule_kernel::tree::Node::leaf", |s| {
-        seen(spherule_kernel::tree::Node::leaf(&s.draw(), s.draw()))
-    }),
-    Call::new("spherule_kernel::tree::Node::lower", |s| {
-        seen(spherule_kernel::tree::Node::lower(s.draw()))
-    }),
-    Call::new("spherule_kernel::tree::Node::upper", |s| {
-        seen(spherule_kernel::tree::Node::upper(s.draw()))
-    }),
-    Call::new("spherule_kernel::tree::Slabs::of", |s| {
-        seen(spherule_kernel::tree::Slabs::of(
-            s.draw(),
-            &s.draw(),
-            &s.draw(),
-        ))
-    }),
-    Call::new("spherule_kernel::tree::Slabs::widened_end", |s| {
-        seen(spherule_kernel::tree::Slabs::widened_end(s.draw()))
-    }),
-    Call::new("spherule_kernel::tree::Tree::is_none", |s| {
-        seen(spherule_kernel::tree::Tree::is_none(
-            s.draw::<odd::OddTree>().get(),
-        ))
-    }),
-    Call::new("spherule_kernel::tree::Tree::nodes", |s| {
-        seen(spherule_kernel::tree::Tree::nodes(
-            s.draw::<odd::OddTree>().get(),
-        ))
-    }),
-    Call::new("spherule_kernel::tree::Tree::of", |s| {
-        seen(spherule_kernel::tree::Tree::of(&s.many()[..]))
-    }),
-    Call::new("spherule_kernel::tree::is_occluded_in_tree#0", |s| {
-        seen(spherule_kernel::tree::is_occluded_in_tree(
-            s.draw(),
-            &s.draw(),
-            s.draw::<odd::OddTree>().get(),
-            &s.many::<spherule_kernel::Sphere>()[..],
-        ))
-    }),
-    Call::new("spherule_kernel::tree::is_occluded_in_tree#1", |s| {
-        seen(spherule_kernel::tree::is_occluded_in_tree(
-            s.draw(),
-            &s.draw(),
-            s.draw::<odd::OddTree>().get(),
-            &s.draw::<odd::OddMovingSpheres>().get(),
-        ))
-    }),
-    Call::new("spherule_kernel::tree::nearest_hit_in_tree#0", |s| {
-        seen(spherule_kernel::tree::nearest_hit_in_tree(
-            s.draw(),
-            &s.draw(),
-            s.draw::<odd::OddTree>().get(),
-            &s.many::<spherule_kernel::Sphere>()[..],
-        ))
-    }),
-    Call::new("spherule_kernel::tree::nearest_hit_in_tree#1", |s| {
-        seen(spherule_kernel::tree::nearest_hit_in_tree(
-            s.draw(),
-            &s.draw(),
-            s.draw::<odd::OddTree>().get(),
-            &s.draw::<odd::OddMovingSpheres>().get(),
-        ))
-    }),
-    Call::new("spherule_kernel::tree::work_in_tree#0", |s| {
-        seen(spherule_kernel::tree::work_in_tree(
-            s.draw(),
-            s.draw(),
-            &s.draw(),
-            s.draw::<odd::OddTree>().get(),
-            &s.many::<spherule_kernel::Sphere>()[..],
-        ))
-    }),
-    Call::new("spherule_kernel::tree::work_in_tree#1", |s| {
-        seen(spherule_kernel::tree::work_in_tree(
-            s.draw(),
-            s.draw(),
-            &s.draw(),
-            s.draw::<odd::OddTree>().get(),
-            &s.draw::<odd::OddMovingSpheres>().get(),
-        ))
-    }),
-    Call::new("spherule_kernel::walk::walk_inside", |s| {
-        seen(spherule_kernel::walk::walk_inside(
-            s.draw(),
-            &s.draw(),
-            s.draw(),
-            s.draw(),
-            s.few(),
-        ))
-    }),
 ];
 
-impl Odd for spherule::accuracy::canary::Canary {
+impl Odd for spherule::accel::tree::Acceleration {
     fn odd(s: &mut Source) -> Self {
-        spherule::accuracy::canary::Canary {
-            sums: Odd::odd(s),
-            products: Odd::odd(s),
-            splits: Odd::odd(s),
-            quotients: Odd::odd(s),
-            quotient_ulps: Odd::odd(s),
-            roots: Odd::odd(s),
-            root_ulps: Odd::odd(s),
-            finds_nan: Odd::odd(s),
-            keeps_subnormals: Odd::odd(s),
-            wide: Odd::odd(s),
-        }
-    }
-}
-
-impl Odd for spherule::accuracy::canary::Share {
-    fn odd(s: &mut Source) -> Self {
-        spherule::accuracy::canary::Share {
-            exact: Odd::odd(s),
-            tried: Odd::odd(s),
+        match s.below(3) {
+            0 => spherule::accel::tree::Acceleration::Auto,
+            1 => spherule::accel::tree::Acceleration::Tree,
+            _ => spherule::accel::tree::Acceleration::BruteForce,
         }
     }
 }
@@ -2532,30 +2740,56 @@ impl Odd for spherule::cpu::InstructionSet {
     }
 }
 
-impl Odd for spherule::device::adapter::DeviceChoice {
+impl Odd for spherule::device::DeviceChoice {
     fn odd(s: &mut Source) -> Self {
         match s.below(4) {
-            0 => spherule::device::adapter::DeviceChoice::Auto,
-            1 => spherule::device::adapter::DeviceChoice::Gpu,
-            2 => spherule::device::adapter::DeviceChoice::Cpu,
-            _ => spherule::device::adapter::DeviceChoice::Named(Odd::odd(s)),
+            0 => spherule::device::DeviceChoice::Auto,
+            1 => spherule::device::DeviceChoice::Gpu,
+            2 => spherule::device::DeviceChoice::Cpu,
+            _ => spherule::device::DeviceChoice::Named(Odd::odd(s)),
         }
     }
 }
 
-impl Odd for spherule::device::gpu::Access {
+impl Odd for spherule::device::buffer::Access {
     fn odd(s: &mut Source) -> Self {
         match s.below(3) {
-            0 => spherule::device::gpu::Access::Uniform,
-            1 => spherule::device::gpu::Access::Read,
-            _ => spherule::device::gpu::Access::ReadWrite,
+            0 => spherule::device::buffer::Access::Uniform,
+            1 => spherule::device::buffer::Access::Read,
+            _ => spherule::device::buffer::Access::ReadWrite,
         }
     }
 }
 
-impl Odd for spherule::device::gpu::LaunchTime {
+impl Odd for spherule::device::canary::Canary {
     fn odd(s: &mut Source) -> Self {
-        spherule::device::gpu::LaunchTime {
+        spherule::device::canary::Canary {
+            sums: Odd::odd(s),
+            products: Odd::odd(s),
+            splits: Odd::odd(s),
+            quotients: Odd::odd(s),
+            quotient_ulps: Odd::odd(s),
+            roots: Odd::odd(s),
+            root_ulps: Odd::odd(s),
+            finds_nan: Odd::odd(s),
+            keeps_subnormals: Odd::odd(s),
+            wide: Odd::odd(s),
+        }
+    }
+}
+
+impl Odd for spherule::device::canary::Share {
+    fn odd(s: &mut Source) -> Self {
+        spherule::device::canary::Share {
+            exact: Odd::odd(s),
+            tried: Odd::odd(s),
+        }
+    }
+}
+
+impl Odd for spherule::device::kernel::LaunchTime {
+    fn odd(s: &mut Source) -> Self {
+        spherule::device::kernel::LaunchTime {
             device: Odd::odd(s),
             host: Odd::odd(s),
         }
@@ -2692,6 +2926,25 @@ impl Odd for spherule::film::compare::Tolerance {
     }
 }
 
+impl Odd for spherule::read::particles::Atom {
+    fn odd(s: &mut Source) -> Self {
+        spherule::read::particles::Atom {
+            position: Odd::odd(s),
+            element: Odd::odd(s),
+        }
+    }
+}
+
+impl Odd for spherule::render::EffectChoice {
+    fn odd(s: &mut Source) -> Self {
+        match s.below(3) {
+            0 => spherule::render::EffectChoice::Auto,
+            1 => spherule::render::EffectChoice::All,
+            _ => spherule::render::EffectChoice::Only(Odd::odd(s)),
+        }
+    }
+}
+
 impl Odd for spherule::render::Rendered {
     fn odd(s: &mut Source) -> Self {
         spherule::render::Rendered {
@@ -2728,16 +2981,6 @@ impl Odd for spherule::render::Timings {
     }
 }
 
-impl Odd for spherule::render::paths::EffectChoice {
-    fn odd(s: &mut Source) -> Self {
-        match s.below(3) {
-            0 => spherule::render::paths::EffectChoice::Auto,
-            1 => spherule::render::paths::EffectChoice::All,
-            _ => spherule::render::paths::EffectChoice::Only(Odd::odd(s)),
-        }
-    }
-}
-
 impl Odd for spherule::render::paths::budget::Reached {
     fn odd(s: &mut Source) -> Self {
         spherule::render::paths::budget::Reached {
@@ -2769,31 +3012,12 @@ impl Odd for spherule::scene::limits::Range {
     }
 }
 
-impl Odd for spherule::scene::molecule::Atom {
-    fn odd(s: &mut Source) -> Self {
-        spherule::scene::molecule::Atom {
-            position: Odd::odd(s),
-            element: Odd::odd(s),
-        }
-    }
-}
-
 impl Odd for spherule::scene::surroundings::Sun {
     fn odd(s: &mut Source) -> Self {
         spherule::scene::surroundings::Sun {
             direction: Odd::odd(s),
             size: Odd::odd(s),
             irradiance: Odd::odd(s),
-        }
-    }
-}
-
-impl Odd for spherule::scene::tree::Acceleration {
-    fn odd(s: &mut Source) -> Self {
-        match s.below(3) {
-            0 => spherule::scene::tree::Acceleration::Auto,
-            1 => spherule::scene::tree::Acceleration::Tree,
-            _ => spherule::scene::tree::Acceleration::BruteForce,
         }
     }
 }
@@ -2809,6 +3033,26 @@ impl Odd for spherule::scene::view::View {
     }
 }
 
+impl Odd for spherule_kernel::accel::node::Extent {
+    fn odd(s: &mut Source) -> Self {
+        spherule_kernel::accel::node::Extent {
+            low: Odd::odd(s),
+            high: Odd::odd(s),
+            smallest_radius: Odd::odd(s),
+        }
+    }
+}
+
+impl Odd for spherule_kernel::accel::node::Node {
+    fn odd(s: &mut Source) -> Self {
+        spherule_kernel::accel::node::Node {
+            sides: Odd::odd(s),
+            corner: Odd::odd(s),
+            links: Odd::odd(s),
+        }
+    }
+}
+
 impl Odd for spherule_kernel::arithmetic::double_single::DoubleSingle {
     fn odd(s: &mut Source) -> Self {
         spherule_kernel::arithmetic::double_single::DoubleSingle {
@@ -2818,9 +3062,9 @@ impl Odd for spherule_kernel::arithmetic::double_single::DoubleSingle {
     }
 }
 
-impl Odd for spherule_kernel::bounds::Aim<f32> {
+impl Odd for spherule_kernel::cull::bounds::Aim<f32> {
     fn odd(s: &mut Source) -> Self {
-        spherule_kernel::bounds::Aim::<f32> {
+        spherule_kernel::cull::bounds::Aim::<f32> {
             direction: Odd::odd(s),
             inverse: Odd::odd(s),
             start: Odd::odd(s),
@@ -2829,9 +3073,9 @@ impl Odd for spherule_kernel::bounds::Aim<f32> {
     }
 }
 
-impl Odd for spherule_kernel::bounds::Bounds {
+impl Odd for spherule_kernel::cull::bounds::Bounds {
     fn odd(s: &mut Source) -> Self {
-        spherule_kernel::bounds::Bounds {
+        spherule_kernel::cull::bounds::Bounds {
             misses: Odd::odd(s),
             hits: Odd::odd(s),
             low: Odd::odd(s),
@@ -2840,9 +3084,9 @@ impl Odd for spherule_kernel::bounds::Bounds {
     }
 }
 
-impl Odd for spherule_kernel::bounds::Line {
+impl Odd for spherule_kernel::cull::bounds::Line {
     fn odd(s: &mut Source) -> Self {
-        spherule_kernel::bounds::Line {
+        spherule_kernel::cull::bounds::Line {
             origin: Odd::odd(s),
             direction: Odd::odd(s),
             a: Odd::odd(s),
@@ -2854,18 +3098,9 @@ impl Odd for spherule_kernel::bounds::Line {
     }
 }
 
-impl Odd for spherule_kernel::canary::Operands {
+impl Odd for spherule_kernel::cull::discriminant::Target<f32> {
     fn odd(s: &mut Source) -> Self {
-        spherule_kernel::canary::Operands {
-            a: Odd::odd(s),
-            b: Odd::odd(s),
-        }
-    }
-}
-
-impl Odd for spherule_kernel::candidates::Target<f32> {
-    fn odd(s: &mut Source) -> Self {
-        spherule_kernel::candidates::Target::<f32> {
+        spherule_kernel::cull::discriminant::Target::<f32> {
             o: Odd::odd(s),
             c: Odd::odd(s),
             oo: Odd::odd(s),
@@ -2963,18 +3198,44 @@ impl Odd for spherule_kernel::light::Light {
     }
 }
 
-impl Odd for spherule_kernel::optics::Fresnel {
+impl Odd for spherule_kernel::light::sky::Sky {
     fn odd(s: &mut Source) -> Self {
-        spherule_kernel::optics::Fresnel {
+        spherule_kernel::light::sky::Sky {
+            horizon: Odd::odd(s),
+            environment_probability: Odd::odd(s),
+            zenith: Odd::odd(s),
+            sun_probability: Odd::odd(s),
+            sun_direction: Odd::odd(s),
+            sun_height: Odd::odd(s),
+            sun_radiance: Odd::odd(s),
+            padding: Odd::odd(s),
+            environment_size: Odd::odd(s),
+            padding_end: Odd::odd(s),
+        }
+    }
+}
+
+impl Odd for spherule_kernel::material::microfacet::Shares {
+    fn odd(s: &mut Source) -> Self {
+        spherule_kernel::material::microfacet::Shares {
+            all: Odd::odd(s),
+            grazing: Odd::odd(s),
+        }
+    }
+}
+
+impl Odd for spherule_kernel::material::optics::Fresnel {
+    fn odd(s: &mut Source) -> Self {
+        spherule_kernel::material::optics::Fresnel {
             reflectance: Odd::odd(s),
             cosine_transmitted: Odd::odd(s),
         }
     }
 }
 
-impl Odd for spherule_kernel::optics::Incidence {
+impl Odd for spherule_kernel::material::optics::Incidence {
     fn odd(s: &mut Source) -> Self {
-        spherule_kernel::optics::Incidence {
+        spherule_kernel::material::optics::Incidence {
             cosine: Odd::odd(s),
             eta: Odd::odd(s),
         }
@@ -3033,6 +3294,15 @@ impl Odd for spherule_kernel::precision::robust::Quadratic<f32> {
     }
 }
 
+impl Odd for spherule_kernel::probe::canary::Operands {
+    fn odd(s: &mut Source) -> Self {
+        spherule_kernel::probe::canary::Operands {
+            a: Odd::odd(s),
+            b: Odd::odd(s),
+        }
+    }
+}
+
 impl Odd for spherule_kernel::ray::Ray {
     fn odd(s: &mut Source) -> Self {
         spherule_kernel::ray::Ray {
@@ -3044,30 +3314,38 @@ impl Odd for spherule_kernel::ray::Ray {
     }
 }
 
-impl Odd for spherule_kernel::shading::Shading {
+impl Odd for spherule_kernel::shading::Quantity {
     fn odd(s: &mut Source) -> Self {
-        match s.below(4) {
-            0 => spherule_kernel::shading::Shading::Lit,
-            1 => spherule_kernel::shading::Shading::Normals,
-            2 => spherule_kernel::shading::Shading::Depth,
-            _ => spherule_kernel::shading::Shading::Flat,
+        match s.below(5) {
+            0 => spherule_kernel::shading::Quantity::Light,
+            1 => spherule_kernel::shading::Quantity::Color,
+            2 => spherule_kernel::shading::Quantity::Vector,
+            3 => spherule_kernel::shading::Quantity::Distance,
+            _ => spherule_kernel::shading::Quantity::Index,
         }
     }
 }
 
-impl Odd for spherule_kernel::sky::Sky {
+impl Odd for spherule_kernel::shading::Seen {
     fn odd(s: &mut Source) -> Self {
-        spherule_kernel::sky::Sky {
-            horizon: Odd::odd(s),
-            environment_probability: Odd::odd(s),
-            zenith: Odd::odd(s),
-            sun_probability: Odd::odd(s),
-            sun_direction: Odd::odd(s),
-            sun_height: Odd::odd(s),
-            sun_radiance: Odd::odd(s),
-            padding: Odd::odd(s),
-            environment_size: Odd::odd(s),
-            padding_end: Odd::odd(s),
+        spherule_kernel::shading::Seen {
+            ray: Odd::odd(s),
+            hit: Odd::odd(s),
+            surface: Odd::odd(s),
+            material: Odd::odd(s),
+            tag: Odd::odd(s),
+        }
+    }
+}
+
+impl Odd for spherule_kernel::shading::Shading {
+    fn odd(s: &mut Source) -> Self {
+        match s.below(5) {
+            0 => spherule_kernel::shading::Shading::Lit,
+            1 => spherule_kernel::shading::Shading::Normals,
+            2 => spherule_kernel::shading::Shading::Depth,
+            3 => spherule_kernel::shading::Shading::Flat,
+            _ => spherule_kernel::shading::Shading::Id,
         }
     }
 }
@@ -3078,26 +3356,6 @@ impl Odd for spherule_kernel::surface::Surface {
             point: Odd::odd(s),
             normal: Odd::odd(s),
             error: Odd::odd(s),
-        }
-    }
-}
-
-impl Odd for spherule_kernel::tree::Extent {
-    fn odd(s: &mut Source) -> Self {
-        spherule_kernel::tree::Extent {
-            low: Odd::odd(s),
-            high: Odd::odd(s),
-            smallest_radius: Odd::odd(s),
-        }
-    }
-}
-
-impl Odd for spherule_kernel::tree::Node {
-    fn odd(s: &mut Source) -> Self {
-        spherule_kernel::tree::Node {
-            sides: Odd::odd(s),
-            corner: Odd::odd(s),
-            links: Odd::odd(s),
         }
     }
 }

@@ -8,7 +8,7 @@ use std::path::PathBuf;
 use std::sync::OnceLock;
 use std::time::Duration;
 
-use spherule::accel::{self, Acceleration, Nodes, Tree};
+use spherule::accel::{self, Acceleration, BuiltTree, Nodes};
 use spherule::accuracy::cases::{Case, catalogue};
 use spherule::accuracy::measure::Measured;
 use spherule::accuracy::oracle::Intersection;
@@ -19,21 +19,22 @@ use spherule::bench::measure::Plan;
 use spherule::bench::scenes::BenchScene;
 use spherule::device::{Access, Buffer, Kernel, Module};
 use spherule::kernel::accel::brute::MovingSpheres;
+use spherule::kernel::accel::node;
 use spherule::kernel::accel::node::Node;
 use spherule::kernel::accel::traversal::OneByOne;
-use spherule::kernel::accel::walk::{self as kernel_tree};
 use spherule::kernel::cull::cone::{Cone, Sight};
 use spherule::kernel::cull::frustum::{Frustum, Plane};
 use spherule::kernel::glam::{UVec2, UVec3, UVec4, Vec2, Vec3, Vec4};
 use spherule::kernel::material::microfacet::{Albedo, RoughMetal};
+use spherule::kernel::material::plastic::Plastic;
 use spherule::kernel::path::Scenery;
-use spherule::kernel::path::random::Sampler;
+use spherule::kernel::path::random::{Sampler, VertexNumbers};
 use spherule::kernel::{
     Accumulator, Camera, Effects, Launch, Light, Material, PathLaunch, Pixel, Rung, Shading, Sphere,
 };
 use spherule::random::Random;
 use spherule::read::particles::elements::{Element, UNKNOWN, by_number};
-use spherule::read::{FORMATS, Format};
+use spherule::read::particles::{FORMATS, Format};
 use spherule::render::EffectChoice;
 use spherule::render::pace::Pace;
 use spherule::render::{cpu, gpu, paths};
@@ -627,6 +628,14 @@ impl Odd for RoughMetal {
     }
 }
 
+impl Odd for Plastic {
+    fn odd(s: &mut Source) -> Self {
+        let table = table(s);
+        let (color, index, alpha) = (Odd::odd(s), Odd::odd(s), Odd::odd(s));
+        Self::new(color, index, alpha, Odd::odd(s), &table)
+    }
+}
+
 /// The tables that the kernel reads, or tables of odd values.
 fn table(s: &mut Source) -> Vec<f32> {
     static ALBEDO: OnceLock<Vec<f32>> = OnceLock::new();
@@ -645,6 +654,12 @@ impl Odd for Sampler {
     }
 }
 
+impl Odd for VertexNumbers {
+    fn odd(s: &mut Source) -> Self {
+        Sampler::odd(s).at_vertex(Odd::odd(s))
+    }
+}
+
 impl Odd for Sphere {
     fn odd(s: &mut Source) -> Self {
         let radius = if s.is_odd() { Odd::odd(s) } else { s.unit() };
@@ -655,11 +670,12 @@ impl Odd for Sphere {
 impl Odd for Material {
     fn odd(s: &mut Source) -> Self {
         let color = Vec3::new(s.unit(), s.unit(), s.unit());
-        let mut material = match s.below(5) {
+        let mut material = match s.below(6) {
             0 => Self::diffuse(color),
             1 => Self::metal(color, s.unit()),
             2 => Self::glass(1.0 + s.unit(), color),
             3 => Self::bubble(1.0 + s.unit(), color),
+            4 => Self::plastic(color, s.unit(), 1.1 + s.unit()),
             _ => Self::emissive(color),
         };
         if s.is_odd() {
@@ -725,8 +741,8 @@ impl Odd for OddTree {
 
 impl OddTree {
     /// The tree; `Tree::NONE` if the nodes are not a tree.
-    pub fn get(&self) -> kernel_tree::Tree<'_> {
-        kernel_tree::Tree::of(&self.0).unwrap_or(kernel_tree::Tree::NONE)
+    pub fn get(&self) -> node::Tree<'_> {
+        node::Tree::of(&self.0).unwrap_or(node::Tree::NONE)
     }
 }
 
@@ -810,11 +826,11 @@ impl OddScenery {
 
 impl Odd for Nodes {
     fn odd(s: &mut Source) -> Self {
-        Tree::odd(s).nodes
+        BuiltTree::odd(s).nodes
     }
 }
 
-impl Odd for Tree {
+impl Odd for BuiltTree {
     fn odd(s: &mut Source) -> Self {
         let mut spheres: Vec<Sphere> = Odd::odd(s);
         spheres.push(Odd::odd(s));

@@ -55,6 +55,14 @@ const LEFT_OUT: &[(&str, &str)] = &[
         "takes a mask: host/lanes.rs",
     ),
     (
+        "spherule_kernel::precision::Rung::with",
+        "takes code: host/trace/search.rs",
+    ),
+    (
+        "spherule_kernel::shading::Shading::with",
+        "takes code: host/render/cpu.rs",
+    ),
+    (
         "spherule::device::gpu::Gpu::launch",
         "runs for as long as a kernel says: tests/gpu_errors.rs",
     ),
@@ -137,7 +145,7 @@ const WRITTEN: &[(&str, &[&str])] = &[
         &["fit(&mut s.draw(), s.draw(), |_| Ok(s.draw()))"],
     ),
     (
-        "spherule::accel::Tree::sort",
+        "spherule::accel::tree::BuiltTree::sort",
         &["sort(&s.draw(), &s.many::<u32>()[..])"],
     ),
 ];
@@ -200,9 +208,9 @@ const BY_HAND: &[&str] = &[
     "spherule::render::pace::Pace",
     "spherule::render::paths::prepare::Prepared",
     "spherule::scene::Scene",
-    "spherule::read::Format",
-    "spherule::accel::Nodes",
-    "spherule::accel::Tree",
+    "spherule::read::particles::Format",
+    "spherule::accel::tree::Nodes",
+    "spherule::accel::tree::BuiltTree",
     "spherule::scene::world::World",
     "spherule::trace::cpu::CpuTracer",
     "spherule::trace::gpu::Batch",
@@ -217,7 +225,9 @@ const BY_HAND: &[&str] = &[
     "spherule_kernel::cull::frustum::Plane",
     "spherule_kernel::material::Material",
     "spherule_kernel::material::microfacet::RoughMetal",
+    "spherule_kernel::material::plastic::Plastic",
     "spherule_kernel::path::random::Sampler",
+    "spherule_kernel::path::random::VertexNumbers",
     "spherule_kernel::sphere::Sphere",
 ];
 
@@ -234,7 +244,7 @@ const ALSO: &[&str] = &[
 /// Types that borrow, and the types in `src/odd.rs` that own their parts.
 const OWNED: &[(&str, &str)] = &[
     ("spherule::render::cpu::Prepared", "OddPrepared"),
-    ("spherule_kernel::path::Scenery", "OddScenery"),
+    ("spherule_kernel::path::scenery::Scenery", "OddScenery"),
     (
         "spherule_kernel::accel::brute::MovingSpheres",
         "OddMovingSpheres",
@@ -247,8 +257,11 @@ const OWNED: &[(&str, &str)] = &[
 const GIVEN: &[(&str, &str)] = &[
     ("spherule::device::Device", "&spherule::Device::Cpu"),
     ("spherule::device::gpu::Gpu", "s.gpu()"),
-    ("spherule::device::gpu::Kernel", "s.kernel()"),
-    ("spherule::render::Progress", "spherule::render::QUIET"),
+    ("spherule::device::kernel::Kernel", "s.kernel()"),
+    (
+        "spherule::render::settings::Progress",
+        "spherule::render::QUIET",
+    ),
 ];
 
 /// Types of other crates that `src/odd.rs` makes.
