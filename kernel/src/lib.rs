@@ -20,8 +20,8 @@
 //! | [`lane`] | [`lane::Lane`]: the numbers that formulas are written in, one or several side by side |
 //! | [`arithmetic`] | floats whose rounding errors are kept |
 //! | [`precision`] | the ladder: ways to intersect a ray with a sphere, one file a rung |
-//! | [`cull`] | what few operations tell for certain, so that the rung need not be asked |
-//! | [`accel`] | which spheres a ray is asked about: all, or those of the boxes that it meets |
+//! | [`cull`] | what few operations tell for certain, so that the rung need not be evaluated |
+//! | [`accel`] | which spheres a ray is tested against: all, or those in the boxes that it meets |
 //! | [`path`] | light paths: what a pixel sees by all effects |
 //! | [`material`] | [`Material`]: what a sphere is made of, and how light is scattered there |
 //! | [`light`], [`fog`] | what shines and what surrounds the scene, what fills it |
