@@ -1,8 +1,10 @@
 //! Which effects a scene calls for, and by what.
 
+use glam::Vec3;
 use spherule_kernel::material::microfacet::SMOOTHEST;
 use spherule_kernel::{Effects, Material};
 
+use super::surroundings::Sun;
 use super::{Sampling, Scene};
 use crate::plural::count_of;
 use crate::shown::shown;
@@ -30,6 +32,154 @@ const RANDOM: Effects = Effects::SOFT_SHADOWS
     .and(Effects::FOG)
     .and(Effects::ENVIRONMENT);
 
+/// What in a scene calls for an effect, if anything does.
+type CalledBy = fn(&Asked<'_>) -> Option<String>;
+
+/// What calls for each effect, in the order of [`Effects`]. Antialiasing and the headlamp are not
+/// among them: what calls for those are the others.
+const CALLS: &[(Effects, CalledBy)] = &[
+    (Effects::HARD_SHADOWS, |asked| {
+        let lights = asked.scene.lights.len();
+        match asked.sun() {
+            _ if !asked.seeks_light() => None,
+            _ if lights > 0 => Some(format!("{lights} [[light]] without a radius")),
+            None => None,
+            Some(sun) if sun.size > 0.0 => None,
+            Some(_) => Some("[sky] sun_size = 0".into()),
+        }
+    }),
+    (Effects::SOFT_SHADOWS, |asked| {
+        match (asked.glow, asked.sun()) {
+            _ if !asked.seeks_light() => None,
+            (Some(index), _) => Some(format!(
+                "spheres of {} shine on others",
+                asked.material(index)
+            )),
+            (None, Some(sun)) if sun.size > 0.0 => Some(format!("[sky] sun_size = {}", sun.size)),
+            _ => None,
+        }
+    }),
+    (Effects::AMBIENT_OCCLUSION, |asked| {
+        asked.diffuse?;
+        let distance = asked.scene.sampling.ambient_occlusion?;
+        Some(format!("[image] ambient_occlusion = {distance}"))
+    }),
+    (Effects::MIRROR, |asked| {
+        let material = asked.material(asked.mirror?);
+        Some(format!("{material} is of kind metal, without roughness"))
+    }),
+    (Effects::ROUGH_METAL, |asked| {
+        let material = asked.material(asked.rough?);
+        Some(format!("{material} is of kind metal, with roughness"))
+    }),
+    (Effects::GLASS, |asked| {
+        let material = asked.material(asked.glass?);
+        Some(format!("{material} is of kind glass"))
+    }),
+    (Effects::EMISSION, |asked| {
+        let material = asked.material(asked.glow?);
+        Some(format!("{material} is of kind emissive"))
+    }),
+    (Effects::INTERREFLECTION, |asked| {
+        let material = asked.material(asked.diffuse?);
+        let sampling = &asked.scene.sampling;
+        let bounces = sampling.ambient_occlusion.is_none()
+            && sampling.max_bounces > 0
+            && asked.scene.has_light();
+        bounces.then(|| {
+            format!(
+                "{material} is of kind diffuse, and light may bounce {}",
+                count_of(sampling.max_bounces as usize, "time")
+            )
+        })
+    }),
+    (Effects::DEFOCUS, |asked| {
+        let aperture = asked.scene.lens.aperture;
+        (aperture > 0.0).then(|| format!("[camera] aperture = {aperture}"))
+    }),
+    (Effects::MOTION_BLUR, |asked| {
+        let (open, close) = asked.scene.lens.shutter;
+        let velocities = &asked.scene.world.velocities;
+        let moving = velocities.iter().filter(|v| **v != Vec3::ZERO).count();
+        ((open, close) != (0.0, 0.0) && moving > 0).then(|| {
+            format!("{moving} [[sphere]] with a velocity, and [camera] shutter = [{open}, {close}]")
+        })
+    }),
+    (Effects::FOG, |asked| {
+        let fog = asked.scene.fog.as_ref()?;
+        Some(format!("[fog] extinction = {}", fog.medium.extinction))
+    }),
+    (Effects::SKY_GRADIENT, |asked| {
+        let sky = asked.scene.sky.as_ref()?;
+        let is_gradient = sky.image.is_none() && sky.horizon != sky.zenith;
+        is_gradient.then(|| "[sky] horizon and zenith differ".into())
+    }),
+    (Effects::SUN, |asked| {
+        let size = asked.sun()?.size;
+        (size > 0.0).then(|| format!("[sky] sun_size = {size}"))
+    }),
+    (Effects::ENVIRONMENT, |asked| {
+        let image = asked.scene.sky.as_ref()?.image.as_ref();
+        image.map(|_| "[sky] image".into())
+    }),
+    (Effects::TRANSPARENT_BACKGROUND, |asked| {
+        let is_transparent = asked.scene.transparent;
+        is_transparent.then(|| "[image] transparent = true".into())
+    }),
+    (Effects::PLASTIC, |asked| {
+        let material = asked.material(asked.plastic?);
+        Some(format!("{material} is of kind plastic"))
+    }),
+];
+
+/// A scene, and the first material of each kind that a sphere has.
+struct Asked<'a> {
+    scene: &'a Scene,
+    diffuse: Option<usize>,
+    mirror: Option<usize>,
+    rough: Option<usize>,
+    glass: Option<usize>,
+    plastic: Option<usize>,
+    glow: Option<usize>,
+}
+
+impl<'a> Asked<'a> {
+    fn of(scene: &'a Scene) -> Self {
+        let metal = |roughness: fn(f32) -> bool| {
+            scene.first_material(&|m| m.kind == Material::METAL && roughness(m.parameter))
+        };
+        Self {
+            scene,
+            diffuse: scene.first_of(Material::DIFFUSE),
+            mirror: metal(|roughness| roughness < SMOOTHEST),
+            rough: metal(|roughness| roughness >= SMOOTHEST),
+            glass: scene
+                .first_of(Material::GLASS)
+                .or_else(|| scene.first_of(Material::BUBBLE)),
+            plastic: scene.first_of(Material::PLASTIC),
+            glow: scene.first_of(Material::EMISSIVE),
+        }
+    }
+
+    /// Whether anything looks for light. Mirrors and glass do not.
+    fn seeks_light(&self) -> bool {
+        let surface = self.diffuse.or(self.rough).or(self.plastic);
+        surface.is_some() || self.scene.fog.is_some()
+    }
+
+    fn sun(&self) -> Option<Sun> {
+        self.scene.sky.as_ref()?.sun
+    }
+
+    /// What a message calls a material.
+    fn material(&self, index: usize) -> String {
+        match self.scene.world.material_names.get(index) {
+            Some(name) if !name.is_empty() => format!("material `{}`", shown(name)),
+            _ => format!("material {index}"),
+        }
+    }
+}
+
 impl Scene {
     /// The effects that the scene calls for. Empty for a scene that one ray a pixel shows.
     #[must_use]
@@ -43,34 +193,41 @@ impl Scene {
     #[must_use]
     pub fn called_effects(&self) -> Vec<Called> {
         let mut called = self.called_but_sampling();
-        let random = self.is_random(
+        let all = |called: &[Called]| {
             called
                 .iter()
-                .fold(Effects::NONE, |set, one| set.and(one.effect)),
-        );
-        let (samples, by) = match self.sampling.samples {
-            Some(samples) => (samples, format!("[image] samples = {samples}")),
-            None if random => (
-                Sampling::DEFAULT_SAMPLES,
-                format!(
-                    "{} samples a pixel are the default where something is random",
-                    Sampling::DEFAULT_SAMPLES
-                ),
-            ),
-            None => (1, String::new()),
+                .fold(Effects::NONE, |set, one| set.and(one.effect))
         };
-        if samples > 1 {
-            called.push(of(Effects::ANTIALIASING, by));
-        }
-        let is_lit = |m: &Material| matches!(m.kind, Material::DIFFUSE | Material::PLASTIC);
-        if !called.is_empty() && !self.has_light() && self.first_material(&is_lit).is_some() {
-            called.push(of(
-                Effects::HEADLAMP,
-                "the scene has no light: no [[light]], no [sky], nothing that glows, no ambient occlusion".into(),
-            ));
-        }
+        called.extend(self.antialiasing(all(&called)));
+        called.extend(self.headlamp(all(&called)));
         called.sort_by_key(|called| called.effect.to_bits());
         called
+    }
+
+    /// Antialiasing, if a pixel of an image with `others` has several samples.
+    fn antialiasing(&self, others: Effects) -> Option<Called> {
+        let by = match self.sampling.samples {
+            Some(samples) if samples > 1 => format!("[image] samples = {samples}"),
+            None if self.is_random(others) => format!(
+                "{} samples a pixel are the default where something is random",
+                Sampling::DEFAULT_SAMPLES
+            ),
+            _ => return None,
+        };
+        Some(of(Effects::ANTIALIASING, by))
+    }
+
+    /// The lamp at the eye, if nothing else shines on what light paths with `others` show.
+    fn headlamp(&self, others: Effects) -> Option<Called> {
+        let is_lit = |m: &Material| matches!(m.kind, Material::DIFFUSE | Material::PLASTIC);
+        let is_dark =
+            !others.is_empty() && !self.has_light() && self.first_material(&is_lit).is_some();
+        is_dark.then(|| {
+            of(
+                Effects::HEADLAMP,
+                "the scene has no light: no [[light]], no [sky], nothing that glows, no ambient occlusion".into(),
+            )
+        })
     }
 
     /// Samples a pixel.
@@ -85,148 +242,13 @@ impl Scene {
         })
     }
 
+    /// The effects of [`CALLS`] that the scene calls for.
     fn called_but_sampling(&self) -> Vec<Called> {
-        let mut called = Vec::new();
-        let mut call = |effect, by: String| called.push(of(effect, by));
-        let material = |index: usize| match self.world.material_names.get(index) {
-            Some(name) if !name.is_empty() => format!("material `{}`", shown(name)),
-            _ => format!("material {index}"),
-        };
-        let first = |wanted: &dyn Fn(&Material) -> bool| self.first_material(wanted);
-        let of_kind = |kind| self.first_of(kind);
-
-        let glow = of_kind(Material::EMISSIVE);
-        if let Some(index) = glow {
-            call(
-                Effects::EMISSION,
-                format!("{} is of kind emissive", material(index)),
-            );
-        }
-        if let Some(index) = first(&|m| m.kind == Material::METAL && m.parameter < SMOOTHEST) {
-            call(
-                Effects::MIRROR,
-                format!("{} is of kind metal, without roughness", material(index)),
-            );
-        }
-        let rough = first(&|m| m.kind == Material::METAL && m.parameter >= SMOOTHEST);
-        if let Some(index) = rough {
-            call(
-                Effects::ROUGH_METAL,
-                format!("{} is of kind metal, with roughness", material(index)),
-            );
-        }
-        if let Some(index) = of_kind(Material::GLASS).or_else(|| of_kind(Material::BUBBLE)) {
-            call(
-                Effects::GLASS,
-                format!("{} is of kind glass", material(index)),
-            );
-        }
-        let plastic = of_kind(Material::PLASTIC);
-        if let Some(index) = plastic {
-            call(
-                Effects::PLASTIC,
-                format!("{} is of kind plastic", material(index)),
-            );
-        }
-        let diffuse = of_kind(Material::DIFFUSE);
-        // Mirrors and glass do not look for light.
-        let seeks = diffuse.is_some() || rough.is_some() || plastic.is_some() || self.fog.is_some();
-        if seeks && !self.lights.is_empty() {
-            call(
-                Effects::HARD_SHADOWS,
-                format!("{} [[light]] without a radius", self.lights.len()),
-            );
-        }
-        if seeks && let Some(index) = glow {
-            call(
-                Effects::SOFT_SHADOWS,
-                format!("spheres of {} shine on others", material(index)),
-            );
-        }
-        if let Some(sky) = &self.sky {
-            if let Some(sun) = sky.sun {
-                if sun.size > 0.0 {
-                    call(Effects::SUN, format!("[sky] sun_size = {}", sun.size));
-                    if seeks {
-                        call(
-                            Effects::SOFT_SHADOWS,
-                            format!("[sky] sun_size = {}", sun.size),
-                        );
-                    }
-                } else if seeks {
-                    call(Effects::HARD_SHADOWS, "[sky] sun_size = 0".into());
-                }
-            }
-            if sky.image.is_some() {
-                call(Effects::ENVIRONMENT, "[sky] image".into());
-            } else if sky.horizon != sky.zenith {
-                call(
-                    Effects::SKY_GRADIENT,
-                    "[sky] horizon and zenith differ".into(),
-                );
-            }
-        }
-        if let Some(distance) = self.sampling.ambient_occlusion {
-            if diffuse.is_some() {
-                call(
-                    Effects::AMBIENT_OCCLUSION,
-                    format!("[image] ambient_occlusion = {distance}"),
-                );
-            }
-        } else if let Some(index) = diffuse
-            && self.has_light()
-            && self.sampling.max_bounces > 0
-        {
-            call(
-                Effects::INTERREFLECTION,
-                format!(
-                    "{} is of kind diffuse, and light may bounce {}",
-                    material(index),
-                    count_of(self.sampling.max_bounces as usize, "time")
-                ),
-            );
-        }
-        if self.lens.aperture > 0.0 {
-            call(
-                Effects::DEFOCUS,
-                format!("[camera] aperture = {}", self.lens.aperture),
-            );
-        }
-        let (open, close) = self.lens.shutter;
-        let moving = self
-            .world
-            .velocities
+        let asked = Asked::of(self);
+        CALLS
             .iter()
-            .filter(|v| **v != glam::Vec3::ZERO);
-        let moving = moving.count();
-        if (open, close) != (0.0, 0.0) && moving > 0 {
-            call(
-                Effects::MOTION_BLUR,
-                format!(
-                    "{moving} [[sphere]] with a velocity, and [camera] shutter = [{open}, {close}]"
-                ),
-            );
-        }
-        if let Some(fog) = &self.fog {
-            call(
-                Effects::FOG,
-                format!("[fog] extinction = {}", fog.medium.extinction),
-            );
-        }
-        if self.transparent {
-            call(
-                Effects::TRANSPARENT_BACKGROUND,
-                "[image] transparent = true".into(),
-            );
-        }
-        // One sentence an effect.
-        let mut seen = Effects::NONE;
-        called.retain(|one| {
-            let is_new = !seen.any(one.effect);
-            seen = seen.and(one.effect);
-            is_new
-        });
-        called
+            .filter_map(|(effect, called_by)| Some(of(*effect, called_by(&asked)?)))
+            .collect()
     }
 
     /// Whether an image with these effects is random. Of several hard lights one is chosen by chance.
@@ -273,4 +295,18 @@ fn of(effect: Effects, by: String) -> Called {
         .find(|(named, _)| *named == effect)
         .map_or("", |(_, name)| name);
     Called { effect, name, by }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_effect_is_called_for_by_an_entry_in_its_place() {
+        let listed: Vec<Effects> = CALLS.iter().map(|(effect, _)| *effect).collect();
+        let named = Effects::NAMED.iter().map(|(effect, _)| *effect);
+        let sampling = Effects::ANTIALIASING.and(Effects::HEADLAMP);
+        let expected: Vec<Effects> = named.filter(|effect| !effect.any(sampling)).collect();
+        assert_eq!(listed, expected);
+    }
 }
