@@ -71,24 +71,160 @@ struct Check {
     passed: bool,
 }
 
+/// How long the parts of the command took that the renderer does not time.
+struct Took {
+    load: Duration,
+    opening: Duration,
+    encode: Duration,
+    total: Duration,
+}
+
+impl Stats {
+    fn of(
+        scene: &Scene,
+        settings: &Settings,
+        device: &Device,
+        rendered: &Rendered,
+        took: &Took,
+        check: Option<Check>,
+    ) -> Self {
+        let timings = &rendered.timings;
+        let trace = timings.trace.as_secs_f64();
+        let is_shown =
+            |effect| rendered.reached.is_some() && settings.effects.shown(effect).any(effect);
+        Self {
+            device: device.name(),
+            backend: device.backend(),
+            precision: settings.rung.name(),
+            spheres: scene.world.spheres.len(),
+            width: scene.width,
+            height: scene.height,
+            rays: rendered.rays,
+            traced_pixels: rendered.traced,
+            effects: scene
+                .called_effects()
+                .iter()
+                .filter(|called| is_shown(called.effect))
+                .map(|called| called.name)
+                .collect(),
+            sampling: rendered.reached,
+            seconds: Seconds {
+                load: took.load.as_secs_f64(),
+                compile: timings.compile.as_secs_f64(),
+                setup: (took.opening + timings.setup).as_secs_f64(),
+                trace,
+                readback: timings.readback.as_secs_f64(),
+                encode: took.encode.as_secs_f64(),
+                total: took.total.as_secs_f64(),
+            },
+            mrays_per_s: rendered.rays as f64 / trace.max(1e-9) * 1e-6,
+            depth_range: rendered.image.depth_range(),
+            check,
+        }
+    }
+}
+
+/// Where the results go.
+struct Outputs {
+    image: Output,
+    stats: Option<Output>,
+}
+
+impl Outputs {
+    fn of(arguments: &RenderArguments) -> Result<Self> {
+        let image = arguments
+            .output
+            .clone()
+            .unwrap_or_else(|| default_output(&arguments.input));
+        let outputs = Self {
+            image: Output::image(&image)?,
+            stats: arguments.stats.as_deref().map(Output::new).transpose()?,
+        };
+        refuse_clashes(&outputs.all())?;
+        refuse_inputs(&outputs.all(), std::slice::from_ref(&arguments.input))?;
+        Ok(outputs)
+    }
+
+    fn all(&self) -> Vec<&Output> {
+        std::iter::once(&self.image).chain(&self.stats).collect()
+    }
+}
+
 pub(super) fn run(arguments: &RenderArguments) -> Result<ExitCode> {
     let started = Instant::now();
-    let say = |text: &str| {
-        if !arguments.quiet {
-            note(text);
-        }
-    };
+    let outputs = Outputs::of(arguments)?;
+    let (scene, early, load) = load_and_open(arguments, started);
+    let mut scene = scene?;
+    refuse_inputs(&outputs.all(), &scene.sources)?;
+    apply(arguments, &mut scene);
 
-    let output = arguments
-        .output
-        .clone()
-        .unwrap_or_else(|| default_output(&arguments.input));
-    let output = Output::image(&output)?;
-    let stats = arguments.stats.as_deref().map(Output::new).transpose()?;
-    let outputs: Vec<&Output> = std::iter::once(&output).chain(&stats).collect();
-    refuse_clashes(&outputs)?;
-    refuse_inputs(&outputs, std::slice::from_ref(&arguments.input))?;
-    let (scene, early, load) = std::thread::scope(|scope| {
+    let (mut device, why) = choose_device(arguments, &scene, early)?;
+    let opening = started.elapsed() - load;
+    let other = other_device(arguments, &device)?;
+    let settings = choose_settings(arguments, &scene, &device, &why);
+
+    // An image that a signal or a time limit cuts has opacities.
+    let format = Format::of(outputs.image.path())?;
+    let room = Room::reserve(format, scene.width, scene.height, true)?;
+    // From here on the first signal ends the tracing, and the picture is kept.
+    let graceful = Graceful::new();
+    let rendered = render_or_fall_back(arguments, &scene, settings, &mut device)?;
+    if let Some(code) = code_for_nothing(&rendered) {
+        return Ok(code);
+    }
+    let encoding = Instant::now();
+    // What is rendered is written before a signal ends the command.
+    rendered.image.save_to(&outputs.image, room)?;
+    let encode = encoding.elapsed();
+    tracing::debug!(
+        "encoded and wrote {}: {encode:.1?}",
+        shown_path(outputs.image.path())
+    );
+    let took = Took {
+        load,
+        opening,
+        encode,
+        total: started.elapsed(),
+    };
+    say_what_is_written(arguments, &scene, &outputs.image, &rendered, took.total);
+
+    let check = other
+        .filter(|_| interrupt::requested().is_none())
+        .map(|other| check(arguments, &scene, settings, &other, &rendered))
+        .transpose()?
+        .flatten();
+    let passed = check.as_ref().is_none_or(|check| check.passed);
+    if let Some(output) = &outputs.stats {
+        let stats = Stats::of(&scene, &settings, &device, &rendered, &took, check);
+        write_json(output, &stats)?;
+    }
+    drop(graceful);
+    if let Some(code) = interrupt::exit_code() {
+        return Ok(code);
+    }
+    Ok(if passed {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::FAILURE
+    })
+}
+
+fn say(arguments: &RenderArguments, text: &str) {
+    if !arguments.quiet {
+        note(text);
+    }
+}
+
+/// A device, and the reason for it.
+type Opened = Result<(Device, String)>;
+
+/// Reads the scene, and meanwhile opens the device if that is certain to be needed. Also returns how
+/// long after `started` the scene was read.
+fn load_and_open(
+    arguments: &RenderArguments,
+    started: Instant,
+) -> (Result<Scene>, Option<Opened>, Duration) {
+    std::thread::scope(|scope| {
         let open = || Device::open(&arguments.device);
         // Without a thread for it the device is opened afterwards.
         let opener = opens_early(arguments)
@@ -102,9 +238,11 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<ExitCode> {
                 .unwrap_or_else(|panic| std::panic::resume_unwind(panic))
         });
         (scene, early, load)
-    });
-    let mut scene = scene?;
-    refuse_inputs(&outputs, &scene.sources)?;
+    })
+}
+
+/// Puts what the arguments say of the image in place of what the scene says.
+fn apply(arguments: &RenderArguments, scene: &mut Scene) {
     if let Some(size) = arguments.size {
         (scene.width, scene.height) = (size.width, size.height);
     }
@@ -112,62 +250,90 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<ExitCode> {
     sampling.samples = arguments.samples.or(sampling.samples);
     sampling.max_bounces = arguments.max_bounces.unwrap_or(sampling.max_bounces);
     sampling.seed = arguments.seed.unwrap_or(sampling.seed);
+}
 
+/// The device that was opened early, or else the one that the arguments and the scene call for.
+fn choose_device(arguments: &RenderArguments, scene: &Scene, early: Option<Opened>) -> Opened {
     let is_brief = || {
         let threads = rayon::current_num_threads();
-        estimate::is_brief(&scene, arguments.shade, arguments.effects, threads)
+        estimate::is_brief(scene, arguments.shade, arguments.effects, threads)
     };
-    let (mut device, why) =
-        if arguments.device == DeviceChoice::Auto && !arguments.check && is_brief() {
-            (Device::Cpu, "done before a GPU would be open".into())
-        } else {
-            early.unwrap_or_else(|| Device::open(&arguments.device))?
-        };
-    let opening = started.elapsed() - load;
-    // Opened before the work, so that a check that cannot be is known at once.
-    let other = match (&device, arguments.check) {
+    if arguments.device == DeviceChoice::Auto && !arguments.check && is_brief() {
+        Ok((Device::Cpu, "done before a GPU would be open".into()))
+    } else {
+        early.unwrap_or_else(|| Device::open(&arguments.device))
+    }
+}
+
+/// The device for `--check`. Opened before the work, so that a check that cannot be is known at
+/// once.
+fn other_device(arguments: &RenderArguments, device: &Device) -> Result<Option<Device>> {
+    Ok(match (device, arguments.check) {
         (_, false) => None,
         (Device::Cpu, true) => Some(Device::open(&DeviceChoice::Gpu)?.0),
         (Device::Gpu(_), true) => Some(Device::Cpu),
-    };
-    let chosen = choose_rung(arguments.precision, &scene, arguments.tolerance, &device);
-    let rung = chosen.rung;
-    say(&format!(
-        "rendering on {} ({why}), precision {} ({})",
-        device.name(),
-        rung.name(),
-        chosen.why
-    ));
+    })
+}
+
+/// The settings that the arguments and the scene call for. Says which device and which rung are
+/// taken, and why, and what of the arguments is without effect.
+fn choose_settings(
+    arguments: &RenderArguments,
+    scene: &Scene,
+    device: &Device,
+    why: &str,
+) -> Settings {
+    let chosen = choose_rung(arguments.precision, scene, arguments.tolerance, device);
+    say(
+        arguments,
+        &format!(
+            "rendering on {} ({why}), precision {} ({})",
+            device.name(),
+            chosen.rung.name(),
+            chosen.why
+        ),
+    );
     if let Some(warning) = &chosen.warning {
-        say(warning);
+        say(arguments, warning);
     }
     let settings = Settings {
         shading: arguments.shade,
-        rung,
+        rung: chosen.rung,
         acceleration: Acceleration::Auto,
         effects: arguments.effects,
         time_limit: arguments.time_limit.map(Duration::from_secs_f64),
         noise: arguments.noise,
     };
-
     let asks_for_samples =
         arguments.samples.is_some() || arguments.seed.is_some() || arguments.noise.is_some();
     let shown = settings.effects.shown(scene.effects());
     if asks_for_samples && (settings.shading != Shading::Lit || shown.is_empty()) {
-        say("nothing in this image is sampled: --samples, --seed and --noise have no effect");
+        say(
+            arguments,
+            "nothing in this image is sampled: --samples, --seed and --noise have no effect",
+        );
     }
+    settings
+}
 
-    // An image that a signal or a time limit cuts has opacities.
-    let room = Room::reserve(Format::of(output.path())?, scene.width, scene.height, true)?;
-    // From here on the first signal ends the tracing, and the picture is kept.
-    let graceful = Graceful::new();
-    let rendered = match with_bar(arguments, &scene, settings, &device) {
+/// Renders on `device`. Where that was chosen by this command and cannot be relied on for the rung,
+/// `device` becomes the CPU.
+fn render_or_fall_back(
+    arguments: &RenderArguments,
+    scene: &Scene,
+    settings: Settings,
+    device: &mut Device,
+) -> Result<Rendered> {
+    let rendered = match with_bar(arguments, scene, settings, device) {
         Err(error @ Error::RungRefused { .. })
             if arguments.device == DeviceChoice::Auto && !arguments.check =>
         {
-            device = Device::Cpu;
-            say(&format!("{error}\nrendering on {} instead", device.name()));
-            with_bar(arguments, &scene, settings, &device)?
+            *device = Device::Cpu;
+            say(
+                arguments,
+                &format!("{error}\nrendering on {} instead", device.name()),
+            );
+            with_bar(arguments, scene, settings, device)?
         }
         done => done?,
     };
@@ -179,109 +345,59 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<ExitCode> {
         timings.trace,
         timings.readback
     );
-    if rendered.traced == 0
-        && let Some(code) = interrupt::exit_code()
-    {
+    Ok(rendered)
+}
+
+/// Where nothing was rendered that could be written: says so, and returns the exit code.
+fn code_for_nothing(rendered: &Rendered) -> Option<ExitCode> {
+    if rendered.traced > 0 {
+        return None;
+    }
+    if let Some(code) = interrupt::exit_code() {
         note("interrupted before the first pixel was done: nothing is written");
-        return Ok(code);
+        return Some(code);
     }
     // Where there are samples there is a preview.
-    if rendered.traced == 0 && rendered.reached.is_none() {
-        note(
-            "the time was up before the first pixel was done: nothing is written; give a longer --time-limit",
-        );
-        return Ok(ExitCode::FAILURE);
+    if rendered.reached.is_some() {
+        return None;
     }
+    note(
+        "the time was up before the first pixel was done: nothing is written; give a longer --time-limit",
+    );
+    Some(ExitCode::FAILURE)
+}
+
+fn say_what_is_written(
+    arguments: &RenderArguments,
+    scene: &Scene,
+    output: &Output,
+    rendered: &Rendered,
+    total: Duration,
+) {
     let image = &rendered.image;
-    let encoding = Instant::now();
-    // What is rendered is written before a signal ends the command.
-    image.save_to(&output, room)?;
-    let encode = encoding.elapsed();
-    tracing::debug!(
-        "encoded and wrote {}: {encode:.1?}",
-        shown_path(output.path())
-    );
-    let total = started.elapsed();
-
     if let Some((near, far)) = image.depth_range() {
-        say(&format!(
-            "depth from {near} (white) to {far} (black) scene units"
-        ));
+        say(
+            arguments,
+            &format!("depth from {near} (white) to {far} (black) scene units"),
+        );
     }
-    let extent = extent(&rendered);
-    let is_interrupted = interrupt::requested().is_some() && !rendered.is_complete();
-    let wrote = format!(
-        "wrote {}: {} × {} pixels{}{extent}, {}, {}",
-        shown_path(output.path()),
-        image.width(),
-        image.height(),
-        if extent.is_empty() { "" } else { ", " },
-        count_of(scene.world.spheres.len(), "sphere"),
-        human(total),
+    let extent = extent(rendered);
+    let path = shown_path(output.path());
+    if interrupt::requested().is_some() && !rendered.is_complete() {
+        note(&format!("interrupted: wrote {path} with {extent}"));
+        return;
+    }
+    say(
+        arguments,
+        &format!(
+            "wrote {path}: {} × {} pixels{}{extent}, {}, {}",
+            image.width(),
+            image.height(),
+            if extent.is_empty() { "" } else { ", " },
+            count_of(scene.world.spheres.len(), "sphere"),
+            human(total),
+        ),
     );
-    if is_interrupted {
-        note(&format!(
-            "interrupted: wrote {} with {extent}",
-            shown_path(output.path())
-        ));
-    } else {
-        say(&wrote);
-    }
-
-    let check = other
-        .filter(|_| interrupt::requested().is_none())
-        .map(|other| check(arguments, &scene, settings, &other, &rendered))
-        .transpose()?
-        .flatten();
-    let passed = check.as_ref().is_none_or(|check| check.passed);
-    if let Some(output) = stats {
-        let rays = rendered.rays;
-        let trace = rendered.timings.trace.as_secs_f64();
-        write_json(
-            &output,
-            &Stats {
-                device: device.name(),
-                backend: device.backend(),
-                precision: rung.name(),
-                spheres: scene.world.spheres.len(),
-                width: scene.width,
-                height: scene.height,
-                rays,
-                traced_pixels: rendered.traced,
-                effects: scene
-                    .called_effects()
-                    .iter()
-                    .filter(|called| {
-                        rendered.reached.is_some()
-                            && settings.effects.shown(called.effect).any(called.effect)
-                    })
-                    .map(|called| called.name)
-                    .collect(),
-                sampling: rendered.reached,
-                seconds: Seconds {
-                    load: load.as_secs_f64(),
-                    compile: rendered.timings.compile.as_secs_f64(),
-                    setup: (opening + rendered.timings.setup).as_secs_f64(),
-                    trace,
-                    readback: rendered.timings.readback.as_secs_f64(),
-                    encode: encode.as_secs_f64(),
-                    total: total.as_secs_f64(),
-                },
-                mrays_per_s: rays as f64 / trace.max(1e-9) * 1e-6,
-                depth_range: image.depth_range(),
-                check,
-            },
-        )?;
-    }
-    drop(graceful);
-    if let Some(code) = interrupt::exit_code() {
-        return Ok(code);
-    }
-    Ok(if passed {
-        ExitCode::SUCCESS
-    } else {
-        ExitCode::FAILURE
-    })
 }
 
 /// Whether the device is opened while the file is read: it is a GPU for certain, and there is a file. What `auto` takes
