@@ -87,39 +87,53 @@ const BYTES_PER_RAY: u64 = 3 * size_of::<(Ray, Sphere)>() as u64;
 /// image, and for drift.
 const SHARE: f64 = 0.8;
 
+/// Where the report goes.
+struct Outputs {
+    html: Option<Output>,
+    json: Option<Output>,
+    stdout: Option<Output>,
+}
+
+impl Outputs {
+    fn of(arguments: &AccuracyArguments) -> Result<Self> {
+        let html = arguments.output.as_deref().map(Output::new).transpose()?;
+        let json = arguments.json.as_deref().map(Output::new).transpose()?;
+        // Output for a program must not be mixed with a table.
+        let to_stdout = html.iter().chain(&json).any(Output::is_stdout);
+        let stdout = (!to_stdout).then(Output::stdout).transpose()?;
+        let outputs = Self { html, json, stdout };
+        refuse_clashes(&outputs.all())?;
+        Ok(outputs)
+    }
+
+    fn all(&self) -> Vec<&Output> {
+        self.html
+            .iter()
+            .chain(&self.json)
+            .chain(&self.stdout)
+            .collect()
+    }
+
+    fn write(&self, report: &Report) -> Result<()> {
+        if let Some(output) = &self.html {
+            output.write(page(report).as_bytes())?;
+            note(&format!("wrote {}", shown_path(output.path())));
+        }
+        if let Some(output) = &self.json {
+            write_json(output, report)?;
+        }
+        if let Some(output) = &self.stdout {
+            output.write(table(report).as_bytes())?;
+        }
+        Ok(())
+    }
+}
+
 pub(super) fn run(arguments: &AccuracyArguments) -> Result<ExitCode> {
     let started = Instant::now();
     // Errors in the input are reported before any device is opened.
-    let html = arguments.output.as_deref().map(Output::new).transpose()?;
-    let json = arguments.json.as_deref().map(Output::new).transpose()?;
-    // Output for a program must not be mixed with a table.
-    let to_stdout = html.iter().chain(&json).any(Output::is_stdout);
-    let stdout = (!to_stdout).then(Output::stdout).transpose()?;
-    let outputs: Vec<&Output> = html.iter().chain(&json).chain(&stdout).collect();
-    refuse_clashes(&outputs)?;
-    let mut scene = match (&arguments.samples, &arguments.scene) {
-        (Some(path), _) | (None, Some(Subject::Scene(path))) => {
-            refuse_inputs(&outputs, std::slice::from_ref(path))?;
-            Some(load(path)?)
-        }
-        (None, Some(Subject::Family(_)) | None) => None,
-    };
-    if let Some(scene) = &scene {
-        refuse_inputs(&outputs, &scene.sources)?;
-    }
-    if let (Some(scene), Some(size)) = (&mut scene, arguments.size) {
-        (scene.width, scene.height) = (size.width, size.height);
-    }
-    if let (Some(scene), Some(path)) = (&scene, &arguments.samples)
-        && scene.effects().is_empty()
-    {
-        return Err(SceneError::without_place(
-            path,
-            "the scene calls for no effect, so one ray a pixel is exact",
-            "give a scene with light or samples, for example scenes/soft-light.toml, or measure its frames with --scene",
-        )
-        .into());
-    }
+    let outputs = Outputs::of(arguments)?;
+    let scene = scene(arguments, &outputs)?;
     memory::require(
         u64::from(arguments.rays) * BYTES_PER_RAY,
         &format!("judging {} rays", arguments.rays),
@@ -135,114 +149,174 @@ pub(super) fn run(arguments: &AccuracyArguments) -> Result<ExitCode> {
             Some(why) => refused.push((rung.name(), why)),
         }
     }
-    let mut families = Vec::new();
-    let mut frames = None;
-    let mut steps = Vec::new();
-    let mut image = None;
-    let mut reference_samples = None;
+    let found = find(arguments, scene, &device, &rungs, started)?;
+    if let Some(reference) = found.reference_samples
+        && found.samples.is_empty()
+    {
+        note(&format!(
+            "nothing is measured: time ran out after {} of the reference, which needs at least {} \
+             for a comparison; give a longer --time-limit",
+            count_of(reference as usize, "sample"),
+            samples::LEAST_REFERENCE,
+        ));
+        return Ok(ExitCode::FAILURE);
+    }
+    if found.is_cut {
+        note("time ran out before all samples were measured; give a longer --time-limit");
+    }
+    outputs.write(&Report {
+        device: device.name(),
+        rays_a_family: arguments.rays,
+        seed: SEED,
+        refused,
+        families: found.families,
+        frames: found.frames,
+        samples_image: found.samples_image,
+        reference_samples: found.reference_samples,
+        samples: found.samples,
+    })?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// The scene that is measured, if it is not families of rays.
+fn scene(arguments: &AccuracyArguments, outputs: &Outputs) -> Result<Option<Scene>> {
+    let path = match (&arguments.samples, &arguments.scene) {
+        (Some(path), _) | (None, Some(Subject::Scene(path))) => path,
+        (None, Some(Subject::Family(_)) | None) => return Ok(None),
+    };
+    refuse_inputs(&outputs.all(), std::slice::from_ref(path))?;
+    let mut scene = load(path)?;
+    refuse_inputs(&outputs.all(), &scene.sources)?;
+    if let Some(size) = arguments.size {
+        (scene.width, scene.height) = (size.width, size.height);
+    }
+    if arguments.samples.is_some() && scene.effects().is_empty() {
+        return Err(SceneError::without_place(
+            path,
+            "the scene calls for no effect, so one ray a pixel is exact",
+            "give a scene with light or samples, for example scenes/soft-light.toml, or measure its frames with --scene",
+        )
+        .into());
+    }
+    Ok(Some(scene))
+}
+
+/// What was measured, as [`Report`] has it.
+#[derive(Default)]
+struct Found {
+    families: Vec<FamilyReport>,
+    frames: Option<FramesReport>,
+    samples_image: Option<[u32; 2]>,
+    reference_samples: Option<u32>,
+    samples: Vec<Step>,
+    /// Whether time ran out before all samples were measured.
+    is_cut: bool,
+}
+
+/// Measures what the arguments ask for. `started` is when the command began.
+fn find(
+    arguments: &AccuracyArguments,
+    scene: Option<Scene>,
+    device: &Device,
+    rungs: &[Rung],
+    started: Instant,
+) -> Result<Found> {
     let bar = Bar::new("measuring", false);
     let progress = |done| {
         bar.set(done);
         ControlFlow::Continue(())
     };
-    let mut is_cut = false;
+    let rays = arguments.rays as usize;
     match (scene, &arguments.scene) {
-        (Some(mut scene), _) if arguments.samples.is_some() => {
-            // The other rungs are between these in time and in error.
-            let ends = [Rung::Robust, Rung::Double, Rung::Certified];
-            let rungs: Vec<Rung> = ends.into_iter().filter(|r| rungs.contains(r)).collect();
-            let whole = [scene.width, scene.height];
+        (Some(scene), _) if arguments.samples.is_some() => {
             // The limit is for the whole command. A requested size is measured in full.
-            let (mut until, mut compiling) = (None, Duration::ZERO);
-            if arguments.size.is_none() {
-                let until = *until.insert(started + Duration::from_secs_f64(arguments.time_limit));
-                compiling = fit_samples(&mut scene, &device, &rungs, until)?;
-            }
-            if whole != [scene.width, scene.height] {
-                note(&format!(
-                    "with {} × {} of {} × {} pixels, to be done in time (--size {2}x{3} measures the whole image)",
-                    scene.width, scene.height, whole[0], whole[1],
-                ));
-            }
-            image = Some([scene.width, scene.height]);
-            let measured = samples::measure(
-                &device,
-                &rungs,
-                &scene,
-                MOST_SAMPLES,
-                compiling,
-                until,
-                &progress,
-            )?;
-            if measured.steps.is_empty() {
-                drop(bar);
-                note(&format!(
-                    "nothing is measured: time ran out after {} of the reference, which needs at least {} \
-                     for a comparison; give a longer --time-limit",
-                    count_of(measured.reference as usize, "sample"),
-                    samples::LEAST_REFERENCE,
-                ));
-                return Ok(ExitCode::FAILURE);
-            }
-            is_cut = measured.is_cut;
-            reference_samples = Some(measured.reference);
-            steps = measured.steps;
+            let until = match arguments.size {
+                None => Some(started + Duration::from_secs_f64(arguments.time_limit)),
+                Some(_) => None,
+            };
+            find_samples(scene, device, rungs, until, &progress)
         }
         (Some(scene), Some(Subject::Scene(path))) => {
-            let samples = scene_rays::sample(&scene, SEED, arguments.rays as usize)?;
-            families.push(measure(&device, &rungs, "scene", &samples, QUIET)?);
-            frames = Some(FramesReport {
+            let samples = scene_rays::sample(&scene, SEED, rays)?;
+            let family = measure(device, rungs, "scene", &samples, QUIET)?;
+            let frames = FramesReport {
                 scene: shown_path(path),
                 spheres: scene.world.spheres.len(),
                 width: scene.width,
                 height: scene.height,
-                rungs: frames::measure(&device, &rungs, &scene, &progress)?,
-            });
-        }
-        (_, only) => {
-            let wanted: Vec<Family> = match only {
-                Some(Subject::Family(only)) => vec![*only],
-                _ => Family::ALL.to_vec(),
+                rungs: frames::measure(device, rungs, &scene, &progress)?,
             };
-            for (index, family) in wanted.iter().enumerate() {
-                let samples = family.sample(SEED, arguments.rays as usize);
-                let progress = |done| progress((index as f64 + done) / wanted.len() as f64);
-                families.push(measure(
-                    &device,
-                    &rungs,
-                    family.name(),
-                    &samples,
-                    &progress,
-                )?);
-            }
+            Ok(Found {
+                families: vec![family],
+                frames: Some(frames),
+                ..Found::default()
+            })
         }
+        (_, Some(Subject::Family(only))) => find_families(&[*only], device, rungs, rays, &progress),
+        _ => find_families(&Family::ALL, device, rungs, rays, &progress),
     }
-    drop(bar);
-    if is_cut {
-        note("time ran out before all samples were measured; give a longer --time-limit");
-    }
-    let report = Report {
-        device: device.name(),
-        rays_a_family: arguments.rays,
-        seed: SEED,
-        refused,
-        families,
-        frames,
-        samples_image: image,
-        reference_samples,
-        samples: steps,
+}
+
+/// Measures the error of more and more samples a pixel, with fewer pixels if they would not be done
+/// at `until`.
+fn find_samples(
+    mut scene: Scene,
+    device: &Device,
+    rungs: &[Rung],
+    until: Option<Instant>,
+    progress: Progress<'_>,
+) -> Result<Found> {
+    // The other rungs are between these in time and in error.
+    let ends = [Rung::Robust, Rung::Double, Rung::Certified];
+    let rungs: Vec<Rung> = ends.into_iter().filter(|r| rungs.contains(r)).collect();
+    let whole = [scene.width, scene.height];
+    let compiling = match until {
+        Some(until) => fit_samples(&mut scene, device, &rungs, until)?,
+        None => Duration::ZERO,
     };
-    if let Some(output) = &html {
-        output.write(page(&report).as_bytes())?;
-        note(&format!("wrote {}", shown_path(output.path())));
+    if whole != [scene.width, scene.height] {
+        note(&format!(
+            "with {} × {} of {} × {} pixels, to be done in time (--size {2}x{3} measures the whole image)",
+            scene.width, scene.height, whole[0], whole[1],
+        ));
     }
-    if let Some(output) = &json {
-        write_json(output, &report)?;
+    let measured = samples::measure(
+        device,
+        &rungs,
+        &scene,
+        MOST_SAMPLES,
+        compiling,
+        until,
+        progress,
+    )?;
+    Ok(Found {
+        samples_image: Some([scene.width, scene.height]),
+        reference_samples: Some(measured.reference),
+        samples: measured.steps,
+        is_cut: measured.is_cut,
+        ..Found::default()
+    })
+}
+
+/// Measures so many rays of each of these families.
+fn find_families(
+    wanted: &[Family],
+    device: &Device,
+    rungs: &[Rung],
+    rays: usize,
+    progress: Progress<'_>,
+) -> Result<Found> {
+    let mut families = Vec::new();
+    for (index, family) in wanted.iter().enumerate() {
+        let samples = family.sample(SEED, rays);
+        let progress = |done| progress((index as f64 + done) / wanted.len() as f64);
+        let name = family.name();
+        families.push(measure(device, rungs, name, &samples, &progress)?);
     }
-    if let Some(output) = &stdout {
-        output.write(table(&report).as_bytes())?;
-    }
-    Ok(ExitCode::SUCCESS)
+    Ok(Found {
+        families,
+        ..Found::default()
+    })
 }
 
 /// Measures everything about one family of rays.
