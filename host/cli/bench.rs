@@ -1,6 +1,6 @@
 //! `spherule bench`: measures the speed of rays of every kind.
 
-use std::ffi::OsStr;
+use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -41,16 +41,7 @@ pub(super) fn run(arguments: &BenchArguments) -> Result<ExitCode> {
         acceleration: arguments.acceleration.into(),
         rounds: arguments.rounds as usize,
     };
-    let names = if arguments.scene.is_empty() {
-        let all = BenchScene::ALL.map(BenchScene::name);
-        // Making it takes longer than all the others together.
-        all.into_iter()
-            .filter(|name| name != "R10M")
-            .map(Into::into)
-            .collect()
-    } else {
-        arguments.scene.clone()
-    };
+    let names = names(arguments);
     // Every name, and the memory that it needs, is checked before anything is measured.
     let sources = names
         .iter()
@@ -61,59 +52,110 @@ pub(super) fn run(arguments: &BenchArguments) -> Result<ExitCode> {
         Some(folder) => export::folders(folder, &sources)?,
         None => Vec::new(),
     };
+    let outputs = outputs(json, &folders)?;
+    let json = arguments.json.as_ref().and(outputs.first());
+    let outputs: Vec<&Output> = outputs.iter().collect();
+    refuse_clashes(&outputs)?;
+    let scenes = scenes(arguments, &names, sources, &outputs)?;
+    if !folders.is_empty() {
+        return export_all(arguments, plan, scenes, &folders);
+    }
+    let (device, why) = Device::open(&arguments.device)?;
+    note(&format!("{} ({why})", device.name()));
+    if arguments.verify {
+        return compare(arguments, &device, scenes);
+    }
+    measure_all(arguments, plan, &device, scenes, json)
+}
+
+/// The names of the scenes that are measured.
+fn names(arguments: &BenchArguments) -> Vec<OsString> {
+    if !arguments.scene.is_empty() {
+        return arguments.scene.clone();
+    }
+    let all = BenchScene::ALL.map(BenchScene::name);
+    // Making it takes longer than all the others together.
+    all.into_iter()
+        .filter(|name| *name != "R10M")
+        .map(Into::into)
+        .collect()
+}
+
+/// Everything that is written: the JSON output first, if there is one.
+fn outputs(json: Option<Output>, folders: &[PathBuf]) -> Result<Vec<Output>> {
     let mut outputs: Vec<Output> = json.into_iter().collect();
     // Tables go to stdout, unless output for a program does.
     if !outputs.iter().any(Output::is_stdout) && folders.is_empty() {
         outputs.push(Output::stdout()?);
     }
-    for folder in &folders {
+    for folder in folders {
         export::prepare(folder)?;
         outputs.extend(export::outputs(folder)?);
     }
-    let json = arguments.json.as_ref().and(outputs.first());
-    let outputs: Vec<&Output> = outputs.iter().collect();
-    refuse_clashes(&outputs)?;
+    Ok(outputs)
+}
+
+/// The scenes, once it is certain that there is room for each and that no output is one of their
+/// files.
+fn scenes(
+    arguments: &BenchArguments,
+    names: &[OsString],
+    sources: Vec<Source>,
+    outputs: &[&Output],
+) -> Result<Vec<Named>> {
     for source in &sources {
         match source {
             Source::Made(scene) => scene.check_room()?,
-            Source::File(file) => refuse_inputs(&outputs, std::slice::from_ref(file))?,
+            Source::File(file) => refuse_inputs(outputs, std::slice::from_ref(file))?,
         }
     }
-    let scenes = names
+    names
         .iter()
         .zip(sources)
         .map(|(name, source)| {
             let name = shown_path(Path::new(name));
             let scene = Named::new(name, source, arguments)?;
             if let Some((scene, _)) = &scene.read {
-                refuse_inputs(&outputs, &scene.sources)?;
+                refuse_inputs(outputs, &scene.sources)?;
             }
             Ok(scene)
         })
-        .collect::<Result<Vec<_>>>()?;
-    if !folders.is_empty() {
-        for (scene, folder) in scenes.into_iter().zip(&folders) {
-            let name = scene.name.clone();
-            let (scene, reach) = scene.take(arguments)?;
-            let tracer = CpuTracer::new(&scene.world.spheres, plan.acceleration);
-            let sets = RaySets::of(&scene, &tracer, reach)?;
-            export(folder, &name, &scene, &sets, &tracer, plan.rung)?;
-            note(&format!("wrote {name} to {}", shown_path(folder)));
-        }
-        return Ok(ExitCode::SUCCESS);
-    }
+        .collect()
+}
 
-    let (device, why) = Device::open(&arguments.device)?;
-    note(&format!("{} ({why})", device.name()));
-    if arguments.verify {
-        return compare(arguments, &device, scenes);
+/// Writes the scenes, their rays and their hits into a folder each.
+fn export_all(
+    arguments: &BenchArguments,
+    plan: Plan,
+    scenes: Vec<Named>,
+    folders: &[PathBuf],
+) -> Result<ExitCode> {
+    for (scene, folder) in scenes.into_iter().zip(folders) {
+        let name = scene.name.clone();
+        let (scene, reach) = scene.take(arguments)?;
+        let tracer = CpuTracer::new(&scene.world.spheres, plan.acceleration);
+        let sets = RaySets::of(&scene, &tracer, reach)?;
+        export(folder, &name, &scene, &sets, &tracer, plan.rung)?;
+        note(&format!("wrote {name} to {}", shown_path(folder)));
     }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Measures the scenes, and prints and writes what was measured.
+fn measure_all(
+    arguments: &BenchArguments,
+    plan: Plan,
+    device: &Device,
+    scenes: Vec<Named>,
+    json: Option<&Output>,
+) -> Result<ExitCode> {
+    let size = arguments.size;
     // Output for a program must not be mixed with tables.
     let to_stdout = json.is_some_and(Output::is_stdout);
     let show = |text: &str| if to_stdout { Ok(()) } else { print(text) };
     let mut limit = None;
     if !arguments.no_limit {
-        let measured = limit.insert(Limit::of(&device)?);
+        let measured = limit.insert(Limit::of(device)?);
         show(&format!(
             "at most {:.0} · 10⁹ operations and {:.0} · 10⁹ bytes a second\n",
             measured.operations_per_s * 1e-9,
@@ -125,7 +167,7 @@ pub(super) fn run(arguments: &BenchArguments) -> Result<ExitCode> {
     for scene in scenes {
         let name = scene.name.clone();
         let (scene, reach) = scene.take(arguments)?;
-        let measured = measure(&device, &name, &scene, reach, plan, limit.as_ref())?;
+        let measured = measure(device, &name, &scene, reach, plan, limit.as_ref())?;
         show(&row(&measured))?;
         all.push(measured);
     }

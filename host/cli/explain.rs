@@ -1,13 +1,13 @@
 //! `spherule explain`: which effects a scene calls for, what calls for them, and what each costs on
 //! this device.
 
-use std::fmt::Write;
+use std::fmt::{self, Write};
 use std::ops::ControlFlow;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
 use serde::Serialize;
-use spherule_kernel::Effects;
+use spherule_kernel::{Effects, Rung};
 
 use super::args::ExplainArguments;
 use super::precision::choose_rung;
@@ -127,34 +127,7 @@ fn report(
         Vec::new()
     } else {
         note(&format!("measuring on {} ({why})", device.name()));
-        let settings = Settings {
-            rung,
-            ..Settings::default()
-        };
-        let mut compiling = Duration::ZERO;
-        if let Some(until) = until {
-            let left = until.saturating_duration_since(Instant::now());
-            let frame = left.mul_f64(SHARE / cost::frames(choices.len()) as f64);
-            fit(&mut scene, frame, |scene| {
-                let (took, compile) = probe(scene, settings, device, until)?;
-                compiling = compiling.max(compile);
-                tracing::debug!(
-                    "a frame of {} × {} pixels and {} samples: {took:.1?} of {frame:.1?}",
-                    scene.width,
-                    scene.height,
-                    scene.samples()
-                );
-                Ok(took)
-            })?;
-        }
-        let bar = Bar::new("measuring", false);
-        let progress = |done| {
-            bar.set(done);
-            ControlFlow::Continue(())
-        };
-        cost::measure(
-            &scene, settings, device, &choices, compiling, until, &progress,
-        )?
+        costs(&mut scene, rung, device, &choices, until)?
     };
     let without = costs.split_off(2.min(costs.len()));
     let frame = match costs[..] {
@@ -191,13 +164,66 @@ fn report(
     })
 }
 
+/// The cost of each of `choices`, in an image that is made smaller if that would not be done at
+/// `until`.
+fn costs(
+    scene: &mut Scene,
+    rung: Rung,
+    device: &Device,
+    choices: &[EffectChoice],
+    until: Option<Instant>,
+) -> Result<Vec<Option<Cost>>> {
+    let settings = Settings {
+        rung,
+        ..Settings::default()
+    };
+    let mut compiling = Duration::ZERO;
+    if let Some(until) = until {
+        let left = until.saturating_duration_since(Instant::now());
+        let frame = left.mul_f64(SHARE / cost::frames(choices.len()) as f64);
+        fit(scene, frame, |scene| {
+            let (took, compile) = probe(scene, settings, device, until)?;
+            compiling = compiling.max(compile);
+            tracing::debug!(
+                "a frame of {} × {} pixels and {} samples: {took:.1?} of {frame:.1?}",
+                scene.width,
+                scene.height,
+                scene.samples()
+            );
+            Ok(took)
+        })?;
+    }
+    let bar = Bar::new("measuring", false);
+    let progress = |done| {
+        bar.set(done);
+        ControlFlow::Continue(())
+    };
+    cost::measure(
+        scene, settings, device, choices, compiling, until, &progress,
+    )
+}
+
 /// The text for what was not measured.
 const NOT_MEASURED: &str = "no time left to measure it";
 
 fn table(report: &Report) -> String {
+    let mut text = String::new();
+    // Writing to a String cannot fail.
+    let _ = add_scene(&mut text, report);
+    if let Some(frame) = &report.frame {
+        let _ = add_frame(&mut text, frame, report.module_bytes);
+    }
+    let _ = add_called(&mut text, report);
+    let _ = add_idle(&mut text, report);
+    text
+}
+
+/// What is rendered, on what, and how much of it was measured.
+fn add_scene(text: &mut String, report: &Report) -> fmt::Result {
     let [width, height] = report.whole_image;
-    let mut text = format!(
-        "{}: {}, {width} × {height} pixels, {}, at most {}\n{}, precision {} ({})\n",
+    writeln!(
+        text,
+        "{}: {}, {width} × {height} pixels, {}, at most {}\n{}, precision {} ({})",
         report.scene,
         count_of(report.spheres, "sphere"),
         count_of(report.whole_samples as usize, "sample"),
@@ -205,7 +231,22 @@ fn table(report: &Report) -> String {
         report.device,
         report.precision,
         report.why_precision,
-    );
+    )?;
+    if (report.whole_image, report.whole_samples) == ([report.width, report.height], report.samples)
+    {
+        return Ok(());
+    }
+    writeln!(
+        text,
+        "measured with {} × {} pixels and {}, to be done in time (--size {width}x{height} measures the whole image)",
+        report.width,
+        report.height,
+        count_of(report.samples as usize, "sample"),
+    )
+}
+
+/// The time of a frame, and how long its pipeline took to compile.
+fn add_frame(text: &mut String, frame: &Frame, module_bytes: usize) -> fmt::Result {
     let spread = |cost: &Cost| {
         format!(
             "{:.3} ± {:.3} ms",
@@ -213,41 +254,33 @@ fn table(report: &Report) -> String {
             0.5 * (cost.slowest - cost.fastest)
         )
     };
-    // Writing to a String cannot fail.
-    if (report.whole_image, report.whole_samples) != ([report.width, report.height], report.samples)
-    {
-        let _ = writeln!(
+    write!(text, "a frame takes {}; ", spread(&frame.own))?;
+    match &frame.all_effects {
+        Some(all) => writeln!(
             text,
-            "measured with {} × {} pixels and {}, to be done in time (--size {width}x{height} measures the whole image)",
-            report.width,
-            report.height,
-            count_of(report.samples as usize, "sample"),
-        );
+            "with the pipeline of all effects {}, {:.2} times as long",
+            spread(all),
+            all.milliseconds / frame.own.milliseconds,
+        ),
+        None => writeln!(text, "with the pipeline of all effects: {NOT_MEASURED}"),
+    }?;
+    if frame.own.compile_milliseconds > 0.0 {
+        writeln!(
+            text,
+            "the pipeline is made of {} KiB of SPIR-V and was compiled in {:.0} ms{}",
+            module_bytes / 1024,
+            frame.own.compile_milliseconds,
+            frame.all_effects.map_or_else(String::new, |all| format!(
+                ", that of all effects in {:.0} ms",
+                all.compile_milliseconds
+            )),
+        )?;
     }
-    if let Some(frame) = &report.frame {
-        let _ = write!(text, "a frame takes {}; ", spread(&frame.own));
-        let _ = match &frame.all_effects {
-            Some(all) => writeln!(
-                text,
-                "with the pipeline of all effects {}, {:.2} times as long",
-                spread(all),
-                all.milliseconds / frame.own.milliseconds,
-            ),
-            None => writeln!(text, "with the pipeline of all effects: {NOT_MEASURED}"),
-        };
-        if frame.own.compile_milliseconds > 0.0 {
-            let _ = writeln!(
-                text,
-                "the pipeline is made of {} KiB of SPIR-V and was compiled in {:.0} ms{}",
-                report.module_bytes / 1024,
-                frame.own.compile_milliseconds,
-                frame.all_effects.map_or_else(String::new, |all| format!(
-                    ", that of all effects in {:.0} ms",
-                    all.compile_milliseconds
-                )),
-            );
-        }
-    }
+    Ok(())
+}
+
+/// The effects that the scene calls for, each with its cost and with what calls for it.
+fn add_called(text: &mut String, report: &Report) -> fmt::Result {
     let called: Vec<&Effect> = report.effects.iter().filter(|e| e.by.is_some()).collect();
     if called.is_empty() {
         text.push_str("\nThe scene calls for no effect: one ray a pixel renders it.\n");
@@ -257,7 +290,7 @@ fn table(report: &Report) -> String {
         } else {
             ""
         };
-        let _ = writeln!(text, "\n{:24} {head:26}  called for by", "Effect");
+        writeln!(text, "\n{:24} {head:26}  called for by", "Effect")?;
     }
     for effect in called {
         let cost = match (&effect.without, &report.frame) {
@@ -269,28 +302,26 @@ fn table(report: &Report) -> String {
             (None, Some(_)) => NOT_MEASURED.into(),
             (_, None) => String::new(),
         };
-        let _ = writeln!(
+        writeln!(
             text,
             "  {:22} {cost:26} {}",
             effect.name,
             effect.by.as_deref().unwrap_or_default()
-        );
+        )?;
     }
-    let idle: Vec<&str> = report
-        .effects
-        .iter()
-        .filter(|effect| effect.by.is_none())
-        .map(|effect| effect.name)
-        .collect();
-    let _ = writeln!(text, "\nNot called for, and not in the pipeline:");
+    Ok(())
+}
+
+/// The names of the effects that nothing calls for.
+fn add_idle(text: &mut String, report: &Report) -> fmt::Result {
+    writeln!(text, "\nNot called for, and not in the pipeline:")?;
     let mut line = String::from(" ");
-    for name in idle {
-        if line.len() + name.len() > 100 {
-            let _ = writeln!(text, "{line}");
+    for effect in report.effects.iter().filter(|e| e.by.is_none()) {
+        if line.len() + effect.name.len() > 100 {
+            writeln!(text, "{line}")?;
             line = String::from(" ");
         }
-        let _ = write!(line, " {name}");
+        write!(line, " {}", effect.name)?;
     }
-    let _ = writeln!(text, "{line}");
-    text
+    writeln!(text, "{line}")
 }
