@@ -27,7 +27,7 @@ use super::choice::DeviceChoice;
 use super::errors::{Watch, caught, one_line};
 use super::kernel::{Kernel, LaunchTime};
 use super::mapping::{LATE, map};
-use super::spirv::Module;
+use super::spirv::{EntryPoint, Module};
 use super::timer::Timer;
 use crate::error::{Error, Result};
 use crate::memory;
@@ -203,30 +203,13 @@ impl Gpu {
         entry_point: &str,
         bindings: &[Access],
     ) -> Result<Kernel> {
-        let invalid = |reason: String| Error::KernelInvalid {
-            kernel: format!("{}/{entry_point}", module.name()),
-            reason,
-        };
-        let entry = module
-            .entry_points()
-            .iter()
-            .find(|entry| entry.name == entry_point)
-            .ok_or_else(|| {
-                let names: Vec<&str> = module
-                    .entry_points()
-                    .iter()
-                    .map(|entry| entry.name.as_str())
-                    .collect();
-                invalid(format!(
-                    "the module has no such entry point, it has {}",
-                    names.join(", ")
-                ))
-            })?;
+        let entry = entry_of(module, entry_point)?;
         if module.needs_f64() && !self.has_f64() {
-            return Err(invalid(format!(
-                "it needs 64-bit floats, which {} lacks",
-                self.name
-            )));
+            return Err(invalid(
+                module,
+                entry_point,
+                format!("it needs 64-bit floats, which {} lacks", self.name),
+            ));
         }
         self.check_workgroup(entry_point, entry.workgroup_size)?;
         let mut hasher = DefaultHasher::new();
@@ -241,60 +224,14 @@ impl Gpu {
         if let Some(kernel) = kernels().get(&key) {
             return Ok(kernel.clone());
         }
-
-        let module = &if module.is_trusted() {
+        let (pipeline, layout) = if module.is_trusted() {
             let only = module.only(entry_point);
-            check_bindings(&only, bindings).map_err(invalid)?;
-            only
+            check_bindings(&only, bindings)
+                .map_err(|reason| invalid(module, entry_point, reason))?;
+            self.compile(&only, entry_point, bindings)?
         } else {
-            module.clone()
+            self.compile(module, entry_point, bindings)?
         };
-        let during = format!("compiling the kernel {entry_point}");
-        let started = Instant::now();
-        // naga panics on some modules.
-        let of_module = |error| match error {
-            Error::Validation { reason, .. } => invalid(reason),
-            other => other,
-        };
-        let shader = self
-            .watch
-            .checked(&self.device, &during, || {
-                caught(|| self.shader_module(module))
-            })
-            .map_err(of_module)?
-            .map_err(|reason| invalid(one_line(&reason)))?;
-        let made = self.watch.checked(&self.device, &during, || {
-            let layout = self.bind_group_layout(entry_point, bindings);
-            let pipeline_layout =
-                self.device
-                    .create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-                        label: Some(entry_point),
-                        bind_group_layouts: &[Some(&layout)],
-                        immediate_size: 0,
-                    });
-            let pipeline = self
-                .device
-                .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-                    label: Some(entry_point),
-                    layout: Some(&pipeline_layout),
-                    module: &shader,
-                    entry_point: Some(entry_point),
-                    compilation_options: wgpu::PipelineCompilationOptions {
-                        constants: &[],
-                        // Modules of unknown origin must not see what another kernel left there.
-                        zero_initialize_workgroup_memory: !module.is_trusted(),
-                    },
-                    cache: None,
-                });
-            (pipeline, layout)
-        });
-        let (pipeline, layout) = made.map_err(of_module)?;
-        tracing::debug!(
-            "compiled {entry_point} of {}, {} KiB of SPIR-V: {:.1?}",
-            module.name(),
-            module.words().len() * 4 / 1024,
-            started.elapsed()
-        );
         let kernel = Kernel {
             name: entry_point.into(),
             pipeline,
@@ -304,6 +241,75 @@ impl Gpu {
         };
         kernels().insert(key, kernel.clone());
         Ok(kernel)
+    }
+
+    /// Compiles an entry point, whether or not that was done before.
+    fn compile(
+        &self,
+        module: &Module,
+        entry_point: &str,
+        bindings: &[Access],
+    ) -> Result<(wgpu::ComputePipeline, wgpu::BindGroupLayout)> {
+        let during = format!("compiling the kernel {entry_point}");
+        let started = Instant::now();
+        // naga panics on some modules.
+        let of_module = |error| match error {
+            Error::Validation { reason, .. } => invalid(module, entry_point, reason),
+            other => other,
+        };
+        let shader = self
+            .watch
+            .checked(&self.device, &during, || {
+                caught(|| self.shader_module(module))
+            })
+            .map_err(of_module)?
+            .map_err(|reason| invalid(module, entry_point, one_line(&reason)))?;
+        let made = self.watch.checked(&self.device, &during, || {
+            let layout = self.bind_group_layout(entry_point, bindings);
+            // Modules of unknown origin must not see what another kernel left there.
+            let zeroes_memory = !module.is_trusted();
+            (
+                self.pipeline(&shader, entry_point, &layout, zeroes_memory),
+                layout,
+            )
+        });
+        let made = made.map_err(of_module)?;
+        tracing::debug!(
+            "compiled {entry_point} of {}, {} KiB of SPIR-V: {:.1?}",
+            module.name(),
+            module.words().len() * 4 / 1024,
+            started.elapsed()
+        );
+        Ok(made)
+    }
+
+    /// The pipeline of an entry point whose descriptor set 0 has this layout.
+    fn pipeline(
+        &self,
+        shader: &wgpu::ShaderModule,
+        entry_point: &str,
+        layout: &wgpu::BindGroupLayout,
+        zeroes_memory: bool,
+    ) -> wgpu::ComputePipeline {
+        let layout = self
+            .device
+            .create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+                label: Some(entry_point),
+                bind_group_layouts: &[Some(layout)],
+                immediate_size: 0,
+            });
+        self.device
+            .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                label: Some(entry_point),
+                layout: Some(&layout),
+                module: shader,
+                entry_point: Some(entry_point),
+                compilation_options: wgpu::PipelineCompilationOptions {
+                    constants: &[],
+                    zero_initialize_workgroup_memory: zeroes_memory,
+                },
+                cache: None,
+            })
     }
 
     fn shader_module(&self, module: &Module) -> wgpu::ShaderModule {
@@ -752,6 +758,28 @@ impl Gpu {
             limit: limit.into(),
         }
     }
+}
+
+/// The error for a kernel that cannot be made.
+fn invalid(module: &Module, entry_point: &str, reason: String) -> Error {
+    Error::KernelInvalid {
+        kernel: format!("{}/{entry_point}", module.name()),
+        reason,
+    }
+}
+
+/// The entry point of `module` with this name.
+fn entry_of<'a>(module: &'a Module, entry_point: &str) -> Result<&'a EntryPoint> {
+    let entries = module.entry_points();
+    let found = entries.iter().find(|entry| entry.name == entry_point);
+    found.ok_or_else(|| {
+        let names: Vec<&str> = entries.iter().map(|entry| entry.name.as_str()).collect();
+        let reason = format!(
+            "the module has no such entry point, it has {}",
+            names.join(", ")
+        );
+        invalid(module, entry_point, reason)
+    })
 }
 
 /// Compares the declared bindings of a trusted module with the module. Nothing else checks them.

@@ -90,38 +90,13 @@ pub fn render(prepared: &Prepared, settings: &Settings, progress: Progress<'_>) 
         .time_limit
         .and_then(|limit| started.checked_add(limit));
     let mut budget = Budget::new(prepared.samples, deadline, settings.noise);
-    let mut stopped_by = StoppedBy::Samples;
-    while let Some((first, count)) = budget.next() {
-        let launch = PathLaunch {
-            first_sample: first,
-            sample_count: count,
-            ..prepared.launch
-        };
-        let begun = Instant::now();
-        let is_interrupted = AtomicBool::new(false);
-        let goes_on = |share: f64| {
-            let goes_on = progress(budget.share(count, share)).is_continue();
-            if !goes_on {
-                is_interrupted.store(true, Ordering::Relaxed);
-            }
-            goes_on && !budget.is_late()
-        };
-        if !pass(&launch, &mut accumulators, &goes_on) {
-            stopped_by = if is_interrupted.into_inner() {
-                StoppedBy::Interrupted
-            } else {
-                StoppedBy::TimeLimit
-            };
-            break;
-        }
-        let stop = budget.took(count, begun.elapsed(), || {
-            Ok::<_, Error>(noise(&accumulators))
-        })?;
-        if let Some(by) = stop {
-            stopped_by = by;
-            break;
-        }
-    }
+    let stopped_by = take_samples(
+        &prepared.launch,
+        &mut budget,
+        &mut accumulators,
+        progress,
+        &pass,
+    )?;
     let timings = Timings {
         setup: started - begun,
         trace: started.elapsed(),
@@ -139,6 +114,49 @@ pub fn render(prepared: &Prepared, settings: &Settings, progress: Progress<'_>) 
         timings,
         reached,
     })
+}
+
+/// Traces a launch for as long as it is told to go on, and says whether all of it was traced.
+type Pass<'a> = &'a dyn Fn(&PathLaunch, &mut [Accumulator], &(dyn Fn(f64) -> bool + Sync)) -> bool;
+
+/// Takes samples until `budget` or `progress` ends that; says what did.
+fn take_samples(
+    launch: &PathLaunch,
+    budget: &mut Budget,
+    accumulators: &mut [Accumulator],
+    progress: Progress<'_>,
+    pass: Pass<'_>,
+) -> Result<StoppedBy> {
+    while let Some((first, count)) = budget.next() {
+        let launch = PathLaunch {
+            first_sample: first,
+            sample_count: count,
+            ..*launch
+        };
+        let begun = Instant::now();
+        let is_interrupted = AtomicBool::new(false);
+        let goes_on = |share: f64| {
+            let goes_on = progress(budget.share(count, share)).is_continue();
+            if !goes_on {
+                is_interrupted.store(true, Ordering::Relaxed);
+            }
+            goes_on && !budget.is_late()
+        };
+        if !pass(&launch, accumulators, &goes_on) {
+            return Ok(if is_interrupted.into_inner() {
+                StoppedBy::Interrupted
+            } else {
+                StoppedBy::TimeLimit
+            });
+        }
+        let stop = budget.took(count, begun.elapsed(), || {
+            Ok::<_, Error>(noise(accumulators))
+        })?;
+        if let Some(by) = stop {
+            return Ok(by);
+        }
+    }
+    Ok(StoppedBy::Samples)
 }
 
 /// The loop that was compiled for the rung and for the fewest effects that hold these.

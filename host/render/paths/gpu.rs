@@ -1,6 +1,7 @@
 //! The GPU path: the `trace_paths` entry point, tile by tile and run of samples by run.
 
 use std::cell::Cell;
+use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
 use glam::{UVec2, Vec4};
@@ -217,30 +218,23 @@ pub fn render(
     };
 
     let tracing = Instant::now();
-    let mut preview = None;
-    if let Some(limit) = settings.time_limit {
-        let most = tiles.max_pixels();
-        preview = Preview::finest(&prepared.launch, most, limit, |next, goes_on| {
-            let goes_on = |_| progress(0.0).is_continue() && goes_on();
-            // In small sums of its own: to make those of a whole tile zero again takes longer.
-            let mut sums = gpu.zeroed("accumulators of a preview", next.sums.len())?;
-            std::mem::swap(&mut launcher.sums, &mut sums);
-            let (done, took) = launcher.pass(&next.launch, goes_on)?;
-            timings.trace += took;
-            launcher.read(&mut next.sums)?;
-            std::mem::swap(&mut launcher.sums, &mut sums);
-            Ok(done == next.sums.len())
-        })?;
-    }
+    let preview = match settings.time_limit {
+        Some(limit) => {
+            let most = tiles.max_pixels();
+            let launch = &prepared.launch;
+            preview(&mut launcher, launch, most, limit, progress, &mut timings)?
+        }
+        None => None,
+    };
     let mut origin = UVec2::ZERO;
     let (mut fewest, mut stopped_by) = (u32::MAX, StoppedBy::Samples);
     while origin.y < size.y {
-        // A tile is as large as one buffer may be: noise is that of the whole image, as far as this reaches.
+        // A tile is as large as one buffer may be: noise is that of the whole image, as far as this
+        // reaches.
         let tile = tiles.at(origin, &Pace::first_on(gpu), 1);
         let count = (tile.x * tile.y) as usize;
         let start = tiles.start(origin);
         let all = image.len();
-        let pixels = &mut image[start..start + count];
         // What is left of the time is shared out evenly over what is left of the image.
         let deadline = settings.time_limit.and_then(|limit| {
             let left = limit.saturating_sub(tracing.elapsed()).as_secs_f64();
@@ -250,53 +244,28 @@ pub fn render(
             Instant::now().checked_add(left)
         });
         let most = most_samples(gpu, prepared);
-        let mut budget = Budget::new(prepared.samples, deadline, settings.noise).with_at_most(most);
-        let mut in_part = (0, 0);
-        let is_interrupted = Cell::new(false);
-        gpu.clear(&launcher.sums)?;
-        while let Some((first, samples)) = budget.next() {
-            let launch = PathLaunch {
-                tile_origin: origin,
-                tile_size: tile,
-                first_sample: first,
-                sample_count: samples,
-                ..prepared.launch
-            };
-            let goes_on = |done: usize| {
-                let share = budget.share(samples, done as f64 / count as f64);
-                let done = (start as f64 + count as f64 * share) / all as f64;
-                is_interrupted.set(progress(done).is_break());
-                !is_interrupted.get() && !budget.is_late()
-            };
-            let (done, took) = launcher.pass(&launch, goes_on)?;
-            timings.trace += took;
-            if done < count {
-                in_part = (done, samples);
-                stopped_by = StoppedBy::TimeLimit;
-                break;
-            }
-            let stop = budget.took(samples, took, || {
-                launcher.read(pixels)?;
-                Ok::<_, Error>(noise(pixels))
-            })?;
-            if let Some(by) = stop {
-                if by != StoppedBy::Samples {
-                    stopped_by = by;
-                }
-                break;
-            }
+        let budget = Budget::new(prepared.samples, deadline, settings.noise).with_at_most(most);
+        let launch = PathLaunch {
+            tile_origin: origin,
+            tile_size: tile,
+            ..prepared.launch
+        };
+        let progress = |share: f64| progress((start as f64 + count as f64 * share) / all as f64);
+        let pixels = &mut image[start..start + count];
+        let (samples, by) = trace_tile(
+            &mut launcher,
+            &launch,
+            budget,
+            &progress,
+            pixels,
+            &mut timings,
+        )?;
+        fewest = fewest.min(samples);
+        if by != StoppedBy::Samples {
+            stopped_by = by;
         }
-        fewest = fewest.min(budget.done());
-
-        let reading = Instant::now();
-        launcher.read(pixels)?;
-        let (with_more, others) = pixels.split_at(in_part.0);
-        check_written(gpu, with_more, budget.done() + in_part.1)?;
-        check_written(gpu, others, budget.done())?;
-        timings.readback += reading.elapsed();
         origin = tiles.next(origin, tile);
-        if is_interrupted.get() {
-            stopped_by = StoppedBy::Interrupted;
+        if by == StoppedBy::Interrupted {
             if origin.y < size.y {
                 fewest = 0;
             }
@@ -318,6 +287,87 @@ pub fn render(
         timings,
         reached,
     })
+}
+
+/// The finest preview, in at most so many pixels, that is done in its part of `limit`.
+fn preview(
+    launcher: &mut Launcher<'_>,
+    whole: &PathLaunch,
+    max_pixels: usize,
+    limit: Duration,
+    progress: Progress<'_>,
+    timings: &mut Timings,
+) -> Result<Option<Preview>> {
+    Preview::finest(whole, max_pixels, limit, |next, goes_on| {
+        let goes_on = |_| progress(0.0).is_continue() && goes_on();
+        // In small sums of its own: to make those of a whole tile zero again takes longer.
+        let mut sums = launcher
+            .gpu
+            .zeroed("accumulators of a preview", next.sums.len())?;
+        std::mem::swap(&mut launcher.sums, &mut sums);
+        let (done, took) = launcher.pass(&next.launch, goes_on)?;
+        timings.trace += took;
+        launcher.read(&mut next.sums)?;
+        std::mem::swap(&mut launcher.sums, &mut sums);
+        Ok(done == next.sums.len())
+    })
+}
+
+/// Takes the samples of the tile of `launch`, until `budget` or `progress` ends that, and reads
+/// their sums into `pixels`. `progress` is told the share of the tile that is done. Returns the
+/// fewest samples of a pixel, and what ended it.
+fn trace_tile(
+    launcher: &mut Launcher<'_>,
+    launch: &PathLaunch,
+    mut budget: Budget,
+    progress: &dyn Fn(f64) -> ControlFlow<()>,
+    pixels: &mut [Accumulator],
+    timings: &mut Timings,
+) -> Result<(u32, StoppedBy)> {
+    let gpu = launcher.gpu;
+    let mut in_part = (0, 0);
+    let mut stopped_by = StoppedBy::Samples;
+    gpu.clear(&launcher.sums)?;
+    while let Some((first, samples)) = budget.next() {
+        let launch = PathLaunch {
+            first_sample: first,
+            sample_count: samples,
+            ..*launch
+        };
+        let is_interrupted = Cell::new(false);
+        let goes_on = |done: usize| {
+            let share = budget.share(samples, done as f64 / pixels.len() as f64);
+            is_interrupted.set(progress(share).is_break());
+            !is_interrupted.get() && !budget.is_late()
+        };
+        let (done, took) = launcher.pass(&launch, goes_on)?;
+        timings.trace += took;
+        if done < pixels.len() {
+            in_part = (done, samples);
+            stopped_by = if is_interrupted.get() {
+                StoppedBy::Interrupted
+            } else {
+                StoppedBy::TimeLimit
+            };
+            break;
+        }
+        let stop = budget.took(samples, took, || {
+            launcher.read(pixels)?;
+            Ok::<_, Error>(noise(pixels))
+        })?;
+        if let Some(by) = stop {
+            stopped_by = by;
+            break;
+        }
+    }
+
+    let reading = Instant::now();
+    launcher.read(pixels)?;
+    let (with_more, others) = pixels.split_at(in_part.0);
+    check_written(gpu, with_more, budget.done() + in_part.1)?;
+    check_written(gpu, others, budget.done())?;
+    timings.readback += reading.elapsed();
+    Ok((budget.done(), stopped_by))
 }
 
 /// A kernel that panics on the device returns without a word; its pixel then lacks samples.
