@@ -270,6 +270,22 @@ impl Output {
     /// Checks whether `target` may be created or replaced.
     fn check(&self, target: &Path) -> Result<()> {
         let directory = directory_of(target);
+        self.check_directory(directory)?;
+        let old = self.check_old(target)?;
+        if is_append_only(directory) {
+            return Err(self.failed(
+                format!(
+                    "cannot be written: {} is append-only: files in it cannot be renamed",
+                    shown_path(directory)
+                ),
+                "name a file in another directory (`lsattr -d` shows its attributes, `chattr -a` removes this one)",
+            ));
+        }
+        self.check_by_making(directory, old.as_ref())
+    }
+
+    /// Checks whether there is this directory.
+    fn check_directory(&self, directory: &Path) -> Result<()> {
         let about = fs::metadata(directory);
         if let Err(error) = &about
             && error.kind() != io::ErrorKind::NotFound
@@ -293,10 +309,16 @@ impl Output {
                 "create the directory, or name another",
             ));
         }
+        Ok(())
+    }
+
+    /// Checks whether the file at `target` may be written, if there is one; returns what is known
+    /// of it.
+    fn check_old(&self, target: &Path) -> Result<Option<Metadata>> {
         // A name that cannot be looked up cannot be given to a file either.
-        let old = match fs::symlink_metadata(target) {
-            Ok(about) => Some(about),
-            Err(error) if error.kind() == io::ErrorKind::NotFound => None,
+        let about = match fs::symlink_metadata(target) {
+            Ok(about) => about,
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
             Err(error) => {
                 return Err(self.failed(
                     format!("cannot be written: {}", said(&error)),
@@ -304,29 +326,24 @@ impl Output {
                 ));
             }
         };
-        if let Some(about) = &old {
-            let opened = OpenOptions::new().write(true).open(target);
-            // A read-only file is protected even from users who may write everything.
-            if about.permissions().readonly() || opened.is_err() {
-                let reason = match opened {
-                    Err(error) => format!("cannot be written: {}", said(&error)),
-                    Ok(_) => "is read-only".into(),
-                };
-                return Err(self.failed(
-                    reason,
-                    "make the file writable or remove it, or name another",
-                ));
-            }
-        }
-        if is_append_only(directory) {
+        let opened = OpenOptions::new().write(true).open(target);
+        // A read-only file is protected even from users who may write everything.
+        if about.permissions().readonly() || opened.is_err() {
+            let reason = match opened {
+                Err(error) => format!("cannot be written: {}", said(&error)),
+                Ok(_) => "is read-only".into(),
+            };
             return Err(self.failed(
-                format!(
-                    "cannot be written: {} is append-only: files in it cannot be renamed",
-                    shown_path(directory)
-                ),
-                "name a file in another directory (`lsattr -d` shows its attributes, `chattr -a` removes this one)",
+                reason,
+                "make the file writable or remove it, or name another",
             ));
         }
+        Ok(Some(about))
+    }
+
+    /// Checks whether a new file can be made in `directory`, be given the permissions of `old`, and
+    /// be removed: makes one.
+    fn check_by_making(&self, directory: &Path, old: Option<&Metadata>) -> Result<()> {
         let unmade = |error: io::Error| {
             let help = match error.kind() {
                 io::ErrorKind::PermissionDenied => {
@@ -344,7 +361,7 @@ impl Output {
             )
         };
         let mut probe = Temporary::in_directory(directory).map_err(unmade)?;
-        if let Some(old) = &old {
+        if let Some(old) = old {
             let file = probe.file().map_err(unmade)?;
             take_after(file, old).map_err(|error| {
                 self.failed(

@@ -74,22 +74,7 @@ pub fn parse(text: &str) -> Result<Vec<Atom>, WrongLine> {
     if lines < count {
         return Err(missing(FIRST_ATOM + lines - 1, count, lines));
     }
-    if let Some((line, _)) = rest
-        .lines()
-        .enumerate()
-        .find(|(_, line)| !line.trim().is_empty())
-        .filter(|(_, line)| line.trim().parse::<usize>().is_err())
-    {
-        return Err(WrongLine::new(
-            FIRST_ATOM + count + line,
-            format!(
-                "the file promises {}, but neither its end nor another frame follows them",
-                count_of(count, "atom")
-            ),
-            "one more line",
-            "write the number of all atoms on the first line, or remove what follows them",
-        ));
-    }
+    check_what_follows(rest, count)?;
     if dummies > 0 {
         tracing::warn!("left out: {}", count_of(dummies, "dummy atom"));
     }
@@ -343,6 +328,27 @@ impl Columns {
 fn position_of<'a>(fields: &mut impl Iterator<Item = &'a str>) -> std::result::Result<Vec3, Wrong> {
     let mut coordinate = || fields.next().and_then(number_of).ok_or(Wrong::Coordinate);
     Ok(Vec3::new(coordinate()?, coordinate()?, coordinate()?))
+}
+
+/// After a frame of `count` atoms a file ends, or another frame begins with its number.
+fn check_what_follows(rest: &str, count: usize) -> Result<(), WrongLine> {
+    let next = rest
+        .lines()
+        .enumerate()
+        .find(|(_, line)| !line.trim().is_empty())
+        .filter(|(_, line)| line.trim().parse::<usize>().is_err());
+    let Some((line, _)) = next else {
+        return Ok(());
+    };
+    Err(WrongLine::new(
+        FIRST_ATOM + count + line,
+        format!(
+            "the file promises {}, but neither its end nor another frame follows them",
+            count_of(count, "atom")
+        ),
+        "one more line",
+        "write the number of all atoms on the first line, or remove what follows them",
+    ))
 }
 
 fn missing(line: usize, expected: usize, found: usize) -> WrongLine {

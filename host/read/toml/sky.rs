@@ -38,59 +38,7 @@ impl Reader<'_> {
         };
         let horizon = optional("horizon", &sky.horizon)?;
         let zenith = optional("zenith", &sky.zenith)?;
-        let sun = match (&sky.sun_direction, &sky.sun_irradiance) {
-            (None, None) => None,
-            (Some(direction), irradiance) => {
-                let towards = self.vector("sun_direction", direction)?;
-                let Some(unit) = towards.as_dvec3().try_normalize() else {
-                    return Err(self
-                        .wrong(
-                            direction,
-                            "sun_direction is zero",
-                            "no direction",
-                            "give the direction towards the sun, for example [1, 2, 0.5]",
-                        )
-                        .into());
-                };
-                let sun = Sun {
-                    direction: unit.as_vec3(),
-                    size: match &sky.sun_size {
-                        Some(size) => self.number("sun_size", size, limits::SUN_SIZE)?,
-                        None => DEFAULT_SUN_SIZE,
-                    },
-                    irradiance: match irradiance {
-                        Some(irradiance) => {
-                            self.color("sun_irradiance", irradiance, limits::IRRADIANCE)?
-                        }
-                        None => Vec3::splat(std::f32::consts::PI),
-                    },
-                };
-                if !limits::RADIANCE.holds_all(sun.radiance().unwrap_or_default()) {
-                    return Err(self
-                        .wrong(
-                            direction,
-                            "the sun is too bright for its size",
-                            "sun_irradiance over the solid angle of its disc is its radiance",
-                            format!(
-                                "radiance is at most {:e}: make sun_size larger, or 0 for a sun without a disc",
-                                limits::MAX_RADIANCE
-                            ),
-                        )
-                        .into());
-                }
-                Some(sun)
-            }
-            (None, Some(irradiance)) => {
-                return Err(self
-                    .wrong(
-                        irradiance,
-                        "the sun has no direction",
-                        "a sun without sun_direction",
-                        "add sun_direction, the direction towards the sun",
-                    )
-                    .into());
-            }
-        };
+        let sun = self.sun(sky)?;
         let image = sky
             .image
             .as_ref()
@@ -112,6 +60,59 @@ impl Reader<'_> {
             sun,
             image,
         })
+    }
+
+    /// The sun, if the table has one.
+    fn sun(&self, sky: &SkyTable) -> Result<Option<Sun>> {
+        let Some(direction) = &sky.sun_direction else {
+            return match &sky.sun_irradiance {
+                None => Ok(None),
+                Some(irradiance) => Err(self
+                    .wrong(
+                        irradiance,
+                        "the sun has no direction",
+                        "a sun without sun_direction",
+                        "add sun_direction, the direction towards the sun",
+                    )
+                    .into()),
+            };
+        };
+        let towards = self.vector("sun_direction", direction)?;
+        let Some(unit) = towards.as_dvec3().try_normalize() else {
+            return Err(self
+                .wrong(
+                    direction,
+                    "sun_direction is zero",
+                    "no direction",
+                    "give the direction towards the sun, for example [1, 2, 0.5]",
+                )
+                .into());
+        };
+        let sun = Sun {
+            direction: unit.as_vec3(),
+            size: match &sky.sun_size {
+                Some(size) => self.number("sun_size", size, limits::SUN_SIZE)?,
+                None => DEFAULT_SUN_SIZE,
+            },
+            irradiance: match &sky.sun_irradiance {
+                Some(irradiance) => self.color("sun_irradiance", irradiance, limits::IRRADIANCE)?,
+                None => Vec3::splat(std::f32::consts::PI),
+            },
+        };
+        if !limits::RADIANCE.holds_all(sun.radiance().unwrap_or_default()) {
+            return Err(self
+                .wrong(
+                    direction,
+                    "the sun is too bright for its size",
+                    "sun_irradiance over the solid angle of its disc is its radiance",
+                    format!(
+                        "radiance is at most {:e}: make sun_size larger, or 0 for a sun without a disc",
+                        limits::MAX_RADIANCE
+                    ),
+                )
+                .into());
+        }
+        Ok(Some(sun))
     }
 }
 
