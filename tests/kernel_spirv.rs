@@ -89,53 +89,99 @@ fn the_modules_offsets_are_the_hosts() {
 }
 
 fn check_offsets(bytes: &[u8]) {
-    let words: Vec<u32> = bytes
-        .chunks_exact(4)
-        .map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]]))
-        .collect();
-    const MEMBER_DECORATE: u32 = 72;
-    const DECORATE: u32 = 71;
-    const OFFSET: u32 = 35;
-    const ARRAY_STRIDE: u32 = 6;
-    const BLOCK: u32 = 2;
-    const TYPE_ARRAY: u32 = 28;
-    const TYPE_RUNTIME_ARRAY: u32 = 29;
-    const TYPE_STRUCT: u32 = 30;
-    let mut parts: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
-    let mut in_buffers: Vec<u32> = Vec::new();
-    let mut structs: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
-    let mut strides = Vec::new();
-    let mut at = 5;
-    while at < words.len() {
-        let (count, opcode) = ((words[at] >> 16) as usize, words[at] & 0xffff);
-        match (opcode, &words[at + 1..at + count]) {
-            (MEMBER_DECORATE, [id, _member, OFFSET, offset]) => {
-                structs.entry(*id).or_default().push(*offset);
-            }
-            (DECORATE, [id, ARRAY_STRIDE, stride]) => strides.push((*id, *stride)),
-            (DECORATE, [id, BLOCK]) => in_buffers.push(*id),
-            (TYPE_STRUCT, [id, members @ ..]) => {
-                parts.insert(*id, members.to_vec());
-            }
-            (TYPE_RUNTIME_ARRAY, [id, element]) | (TYPE_ARRAY, [id, element, _]) => {
-                parts.insert(*id, vec![*element]);
-            }
-            _ => {}
-        }
-        at += count;
-    }
-
-    // All types in buffers, down to the last member.
-    let mut index = 0;
-    while index < in_buffers.len() {
-        let inner = parts.get(&in_buffers[index]).cloned().unwrap_or_default();
-        in_buffers.extend(inner);
-        index += 1;
-    }
-    structs.retain(|id, _| in_buffers.contains(id));
-    strides.retain(|(id, _)| in_buffers.contains(id));
-
+    let found = Buffers::of(bytes);
     let value = layout_of_host();
+    let has_f64 = Module::from_bytes("committed", bytes).is_ok_and(|module| module.needs_f64());
+    let expected = offsets_of_host(&value, has_f64);
+    assert!(!found.structs.is_empty());
+    for offsets in &found.structs {
+        assert!(
+            expected.contains(offsets),
+            "no shared type has the offsets {offsets:?}"
+        );
+    }
+    for offsets in &expected {
+        assert!(
+            found.structs.contains(offsets),
+            "the module has no struct with {offsets:?}"
+        );
+    }
+    let sizes: Vec<u32> = layout::NAMES
+        .iter()
+        .filter(|entry| entry.starts_with("size of "))
+        .map(|entry| value[entry])
+        .chain([size_of::<u32>() as u32])
+        .collect();
+    assert!(!found.strides.is_empty());
+    for stride in found.strides {
+        assert!(sizes.contains(&stride), "no shared type has {stride} bytes");
+    }
+}
+
+/// What a module says of the types that its buffers hold.
+struct Buffers {
+    /// The offsets of the members of each struct that has several.
+    structs: Vec<Vec<u32>>,
+    /// The strides of the arrays.
+    strides: Vec<u32>,
+}
+
+impl Buffers {
+    fn of(bytes: &[u8]) -> Self {
+        const MEMBER_DECORATE: u32 = 72;
+        const DECORATE: u32 = 71;
+        const OFFSET: u32 = 35;
+        const ARRAY_STRIDE: u32 = 6;
+        const BLOCK: u32 = 2;
+        const TYPE_ARRAY: u32 = 28;
+        const TYPE_RUNTIME_ARRAY: u32 = 29;
+        const TYPE_STRUCT: u32 = 30;
+        let words: Vec<u32> = bytes
+            .chunks_exact(4)
+            .map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]]))
+            .collect();
+        let mut parts: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
+        let mut in_buffers: Vec<u32> = Vec::new();
+        let mut structs: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
+        let mut strides = Vec::new();
+        let mut at = 5;
+        while at < words.len() {
+            let (count, opcode) = ((words[at] >> 16) as usize, words[at] & 0xffff);
+            match (opcode, &words[at + 1..at + count]) {
+                (MEMBER_DECORATE, [id, _member, OFFSET, offset]) => {
+                    structs.entry(*id).or_default().push(*offset);
+                }
+                (DECORATE, [id, ARRAY_STRIDE, stride]) => strides.push((*id, *stride)),
+                (DECORATE, [id, BLOCK]) => in_buffers.push(*id),
+                (TYPE_STRUCT, [id, members @ ..]) => {
+                    parts.insert(*id, members.to_vec());
+                }
+                (TYPE_RUNTIME_ARRAY, [id, element]) | (TYPE_ARRAY, [id, element, _]) => {
+                    parts.insert(*id, vec![*element]);
+                }
+                _ => {}
+            }
+            at += count;
+        }
+
+        // All types in buffers, down to the last member.
+        let mut index = 0;
+        while index < in_buffers.len() {
+            let inner = parts.get(&in_buffers[index]).cloned().unwrap_or_default();
+            in_buffers.extend(inner);
+            index += 1;
+        }
+        structs.retain(|id, offsets| in_buffers.contains(id) && offsets.len() > 1);
+        strides.retain(|(id, _)| in_buffers.contains(id));
+        Self {
+            structs: structs.into_values().collect(),
+            strides: strides.into_iter().map(|(_, stride)| stride).collect(),
+        }
+    }
+}
+
+/// The offsets of the members of the shared types, by rustc's layout, as a module states them.
+fn offsets_of_host(value: &BTreeMap<&str, u32>, has_f64: bool) -> Vec<Vec<u32>> {
     let fields = |name: &str| -> Vec<u32> {
         let prefix = format!("{name}.");
         layout::NAMES
@@ -164,36 +210,10 @@ fn check_offsets(bytes: &[u8]) {
         fields("Accumulator"),
         fields("Node"),
     ];
-    if Module::from_bytes("committed", bytes).is_ok_and(|module| module.needs_f64()) {
+    if has_f64 {
         expected.push(fields("WideOutcome"));
     }
-    let found: Vec<&Vec<u32>> = structs
-        .values()
-        .filter(|offsets| offsets.len() > 1)
-        .collect();
-    assert!(!found.is_empty());
-    for offsets in &found {
-        assert!(
-            expected.contains(offsets),
-            "no shared type has the offsets {offsets:?}"
-        );
-    }
-    for offsets in &expected {
-        assert!(
-            found.contains(&offsets),
-            "the module has no struct with {offsets:?}"
-        );
-    }
-    let sizes: Vec<u32> = layout::NAMES
-        .iter()
-        .filter(|entry| entry.starts_with("size of "))
-        .map(|entry| value[entry])
-        .chain([size_of::<u32>() as u32])
-        .collect();
-    assert!(!strides.is_empty());
-    for (_, stride) in strides {
-        assert!(sizes.contains(&stride), "no shared type has {stride} bytes");
-    }
+    expected
 }
 
 fn layout_of_host() -> BTreeMap<&'static str, u32> {

@@ -844,18 +844,39 @@ fn a_socket_is_written_into() {
     image::load_from_memory(&reader.join().expect("a reader")).expect("an image");
 }
 
-/// Standard output is compared with the other outputs and the inputs, whatever its name.
-#[test]
-fn standard_output_is_shared_with_nothing() {
+/// A folder with `input.toml`, a scene with light, and `so.png`, a link to standard output.
+fn with_input() -> tempfile::TempDir {
     let directory = with_scene();
     let path = directory.path();
-    let spherule = quoted();
     fs::write(path.join("light.toml"), format!("{LIGHT}{SPHERE}")).expect("a scene");
     fs::copy(path.join("light.toml"), path.join("input.toml")).expect("a copy");
     symlink("/dev/stdout", path.join("so.png")).expect("a link");
-    let render = format!("{spherule} render input.toml --device cpu");
-    let accuracy = format!("{spherule} accuracy --device cpu --rays 1000");
-    let bench = format!("{spherule} bench --device cpu --no-limit --size 8x8 --rounds 1");
+    directory
+}
+
+/// The commands that the tests of standard output run in such a folder.
+fn render_input() -> String {
+    format!("{} render input.toml --device cpu", quoted())
+}
+
+fn accuracy_of_few() -> String {
+    format!("{} accuracy --device cpu --rays 1000", quoted())
+}
+
+fn brief_bench() -> String {
+    format!(
+        "{} bench --device cpu --no-limit --size 8x8 --rounds 1",
+        quoted()
+    )
+}
+
+/// Standard output is compared with the other outputs and the inputs, whatever its name.
+#[test]
+fn standard_output_is_shared_with_nothing() {
+    let directory = with_input();
+    let path = directory.path();
+    let spherule = quoted();
+    let (render, accuracy, bench) = (render_input(), accuracy_of_few(), brief_bench());
     let content = fs::read(path.join("input.toml")).expect("a file");
     for (script, message) in [
         (
@@ -929,11 +950,16 @@ fn standard_output_is_shared_with_nothing() {
             assert!(written.is_empty(), "{script}");
         }
     }
-    // Its other names mean the same.
+}
+
+#[test]
+fn every_name_of_standard_output_means_it() {
+    let directory = with_input();
+    let path = directory.path();
     for name in ["-", "/dev/stdout", "/dev/fd/1"] {
         for command in [
-            format!("{accuracy} --scene far --json {name}"),
-            format!("{bench} --scene S2 --json {name}"),
+            format!("{} --scene far --json {name}", accuracy_of_few()),
+            format!("{} --scene S2 --json {name}", brief_bench()),
         ] {
             for to in ["| cat", "> both; cat both"] {
                 let assert = shell(path, &format!("{command} {to}")).success();
@@ -942,7 +968,14 @@ fn standard_output_is_shared_with_nothing() {
             }
         }
     }
-    // /dev/null may be shared, and another file is no conflict.
+}
+
+/// /dev/null may be shared, and another file is no conflict.
+#[test]
+fn standard_output_may_be_where_nothing_is_lost() {
+    let directory = with_input();
+    let path = directory.path();
+    let render = render_input();
     shell(path, &format!("{render} -o a.png --stats - > /dev/null")).success();
     shell(
         path,
