@@ -697,6 +697,7 @@ fn what_is_done_before_the_tracing_is_timed_on_the_cpu_too() {
 
 /// A scene calls for the effects that its keys need, and for no others.
 #[test]
+#[expect(clippy::too_many_lines, reason = "one table, an entry a key")]
 fn each_effect_is_called_for_by_its_key() {
     let base = "[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\n";
     let read = |text: &str| {

@@ -51,6 +51,7 @@ fn a_whole_scene_is_read() {
 
 /// Each error, the line on which it must be found, and a word of the message.
 #[test]
+#[expect(clippy::too_many_lines, reason = "one table, an entry a mistake")]
 fn each_mistake_is_refused_at_its_line() {
     let cases = [
         ("width = 4", "width = 0", 3, "width = 0"),
@@ -228,6 +229,7 @@ fn a_mistake_without_a_place_has_none() {
 
 /// Each error in a scene of its own: the scene's text besides a sphere, and a word of the message.
 #[test]
+#[expect(clippy::too_many_lines, reason = "one table, an entry a mistake")]
 fn each_key_of_the_effects_refuses_what_it_cannot_be() {
     let cases = [
         ("camera = 5", "this is the whole number `5`, not a table"),
