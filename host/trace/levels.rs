@@ -8,6 +8,9 @@
 use glam::Vec3;
 use spherule_kernel::accel::node::{Node, Tree};
 
+use super::avx512::Avx512;
+use crate::cpu::InstructionSet;
+
 /// Boxes in a box, and the most spheres in a box at the bottom.
 pub(super) const WIDTH: usize = 16;
 /// The most groups of boxes on the top level.
@@ -83,10 +86,7 @@ impl Levels {
 }
 
 fn is_usable() -> bool {
-    #[cfg(target_arch = "x86_64")]
-    return super::avx512::Avx512::of(crate::cpu::InstructionSet::chosen()).is_some();
-    #[cfg(not(target_arch = "x86_64"))]
-    return false;
+    Avx512::of(InstructionSet::chosen()).is_some()
 }
 
 /// A box, and its spheres if it is at the bottom.

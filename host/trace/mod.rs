@@ -20,6 +20,10 @@ mod boxes_avx512;
 pub mod cpu;
 #[cfg(feature = "gpu")]
 pub mod gpu;
+#[cfg(target_arch = "x86_64")]
+pub(crate) mod levels;
+#[cfg(not(target_arch = "x86_64"))]
+#[path = "no_levels.rs"]
 pub(crate) mod levels;
 mod search;
 pub(crate) mod single;

@@ -6,13 +6,17 @@
 //! [`bounds`](spherule_kernel::cull::bounds) leave open.
 
 use glam::{Mat4, Vec4};
+#[cfg(target_arch = "x86_64")]
+use spherule_kernel::Effects;
 use spherule_kernel::accel::brute::{MovingSpheres, Spheres};
-use spherule_kernel::accel::node::{Extent, Node, Tree};
+use spherule_kernel::accel::node::Tree;
+#[cfg(target_arch = "x86_64")]
+use spherule_kernel::accel::node::{Extent, Node};
 use spherule_kernel::cull::bounds::Line;
 use spherule_kernel::cull::discriminant::Target;
 use spherule_kernel::lane::Lane3;
 use spherule_kernel::precision::{self, OnRung, Precision, Robust};
-use spherule_kernel::{Effects, Hit, Ray, Rung, Sphere};
+use spherule_kernel::{Hit, Ray, Rung, Sphere};
 
 #[cfg(target_arch = "x86_64")]
 use super::avx512::{self, Avx512};
@@ -31,6 +35,7 @@ pub(super) struct Query<'a> {
     /// The tree; without nodes if every sphere is to be tested.
     pub(super) tree: Tree<'a>,
     /// The extent in the tree's first node.
+    #[cfg(target_arch = "x86_64")]
     pub(super) extent: Extent,
 }
 
@@ -52,6 +57,7 @@ impl<'a> Query<'a> {
             rung,
             intersect: rung.with(Formula),
             tree,
+            #[cfg(target_arch = "x86_64")]
             extent: Extent::of_node(tree.nodes().first().unwrap_or(&Node::default())),
         }
     }
@@ -66,10 +72,12 @@ impl<'a> Query<'a> {
 /// Spheres that may be contiguous in memory.
 pub trait Resting: Spheres {
     /// All spheres as [`Spheres::sphere`] returns them; `None` if they move.
+    #[cfg(target_arch = "x86_64")]
     fn at_rest(&self) -> Option<&[Sphere]>;
 }
 
 impl Resting for [Sphere] {
+    #[cfg(target_arch = "x86_64")]
     #[inline]
     fn at_rest(&self) -> Option<&[Sphere]> {
         Some(self)
@@ -77,6 +85,7 @@ impl Resting for [Sphere] {
 }
 
 impl Resting for MovingSpheres<'_> {
+    #[cfg(target_arch = "x86_64")]
     #[inline]
     fn at_rest(&self) -> Option<&[Sphere]> {
         let moves = self.effects.any(Effects::MOTION_BLUR) & !self.velocities.is_empty();
@@ -92,6 +101,7 @@ pub(super) struct Search {
     is_lazy: bool,
     is_robust: bool,
     /// Whether the rung's hits lie within [`bounds`](spherule_kernel::cull::bounds).
+    #[cfg(target_arch = "x86_64")]
     is_bounded: bool,
     /// The ray. Its end is lowered to where a sphere could still be nearer.
     pub(super) ray: Ray,
@@ -115,6 +125,7 @@ impl Search {
             intersect,
             is_lazy: precision::is_lazy(rung.to_u32()),
             is_robust: rung == Rung::Robust,
+            #[cfg(target_arch = "x86_64")]
             is_bounded: rung.is_bounded(),
             ray: Ray {
                 t_max: ray.end(),

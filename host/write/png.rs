@@ -188,6 +188,7 @@ mod tests {
     use glam::Vec3;
     use spherule_kernel::{Pixel, Shading};
     use std::cell::OnceCell;
+    #[cfg(target_os = "linux")]
     use std::fs::File;
     use std::io::{BufReader, Read};
 
