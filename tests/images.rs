@@ -489,8 +489,8 @@ fn ids_are_those_of_the_scene() {
     }
 }
 
-/// Measurements are themselves in EXR files: signed normals, distances, indices; where nothing is hit
-/// they are zero, infinite, and no index, with no opacity.
+/// Measurements are themselves in EXR files: signed normals, distances, indices; where nothing is
+/// hit they are zero, infinite, and no index, with no opacity.
 #[test]
 fn exr_files_hold_measurements() {
     use exr::prelude::{FlatSamples, read_first_flat_layer_from_file};

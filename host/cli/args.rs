@@ -54,7 +54,8 @@ pub(super) struct RenderArguments {
     #[arg(help = format!("The {}", read::inputs()))]
     pub(super) input: PathBuf,
 
-    /// The image to write: 8-bit PNG, or linear 32-bit float EXR [default: the input's name with .png, in the current directory]
+    /// The image to write: 8-bit PNG, or linear 32-bit float EXR [default: the input's name with
+    /// .png, in the current directory]
     #[arg(short, long, value_name = "OUT.png|OUT.exr", value_parser = OsStringValueParser::new().try_map(image_path))]
     pub(super) output: Option<PathBuf>,
 
@@ -62,7 +63,8 @@ pub(super) struct RenderArguments {
     #[arg(long, value_name = "WxH")]
     pub(super) size: Option<Size>,
 
-    /// What renders: auto (the CPU for small images and where there is no real GPU, else that), gpu (a software one too), cpu, or a part of an adapter's name
+    /// What renders: auto (the CPU for small images and where there is no real GPU, else that), gpu
+    /// (a software one too), cpu, or a part of an adapter's name
     #[arg(long, value_name = "auto|gpu|cpu|NAME", default_value = "auto")]
     pub(super) device: DeviceChoice,
 
@@ -90,21 +92,24 @@ pub(super) struct RenderArguments {
     #[arg(long, value_name = "N")]
     pub(super) seed: Option<u32>,
 
-    /// Which effects the pipeline holds: auto (those that the scene calls for), all (the others stay idle), none, or a
-    /// list of names as `spherule explain` prints them (the scene's other effects are left out)
+    /// Which effects the pipeline holds: auto (those that the scene calls for), all (the others
+    /// stay idle), none, or a list of names as `spherule explain` prints them (the scene's other
+    /// effects are left out)
     #[arg(long, value_name = "auto|all|none|LIST", default_value = "auto", value_parser = effects)]
     pub(super) effects: EffectChoice,
 
-    /// Trace no longer than this many seconds, also in the middle of a sample: pixels that have none by then show a coarse preview, or
-    /// nothing in an image of one ray a pixel
+    /// Trace no longer than this many seconds, also in the middle of a sample: pixels that have
+    /// none by then show a coarse preview, or nothing in an image of one ray a pixel
     #[arg(long, value_name = "SECONDS", value_parser = positive)]
     pub(super) time_limit: Option<f64>,
 
-    /// Take no more samples when the noise is this low: the pixels' standard error over the mean luminance, 0.01 for 1 %
+    /// Take no more samples when the noise is this low: the pixels' standard error over the mean
+    /// luminance, 0.01 for 1 %
     #[arg(long, value_name = "TARGET", value_parser = positive)]
     pub(super) noise: Option<f64>,
 
-    /// Render on the GPU and on the CPU and compare: fail if more than 0.1 % of the pixels differ by more than 2/255
+    /// Render on the GPU and on the CPU and compare: fail if more than 0.1 % of the pixels differ
+    /// by more than 2/255
     #[arg(long, conflicts_with_all = ["time_limit", "noise"])]
     pub(super) check: bool,
 
@@ -156,12 +161,13 @@ pub(super) struct AccuracyArguments {
     #[arg(long, value_name = "SCENE.toml", conflicts_with = "scene")]
     pub(super) samples: Option<PathBuf>,
 
-    /// The size of a scene file's frames in pixels [default: the scene's; with --samples see --time-limit]
+    /// The size of a scene file's frames in pixels [default: the scene's; with --samples
+    /// see --time-limit]
     #[arg(long, value_name = "WIDTHxHEIGHT")]
     pub(super) size: Option<Size>,
 
-    /// With --samples: take no longer than about this many seconds, by a smaller image and fewer samples; where they are too few to
-    /// judge by, nothing is measured, and the exit code is 1
+    /// With --samples: take no longer than about this many seconds, by a smaller image and fewer
+    /// samples; where they are too few to judge by, nothing is measured, and the exit code is 1
     #[arg(long, value_name = "SECONDS", value_parser = positive, default_value = "60", conflicts_with_all = ["size", "scene"], requires = "samples")]
     pub(super) time_limit: f64,
 
@@ -196,7 +202,8 @@ pub(super) struct ExplainArguments {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_SAMPLES)))]
     pub(super) samples: Option<u32>,
 
-    /// Take no longer than about this many seconds, by a smaller image, fewer samples and fewer runs
+    /// Take no longer than about this many seconds, by a smaller image, fewer samples and fewer
+    /// runs
     #[arg(long, value_name = "SECONDS", value_parser = positive, default_value = "20", conflicts_with_all = ["size", "no_costs"])]
     pub(super) time_limit: f64,
 
@@ -250,12 +257,13 @@ pub(super) struct BenchArguments {
     #[arg(long, value_name = "FILE.json")]
     pub(super) json: Option<PathBuf>,
 
-    /// Measure nothing: trace rays of every kind with the tree and against every sphere, on every rung, and compare
+    /// Measure nothing: trace rays of every kind with the tree and against every sphere, on every
+    /// rung, and compare
     #[arg(long, conflicts_with_all = ["json", "export", "precision", "acceleration"])]
     pub(super) verify: bool,
 
-    /// Measure nothing: write the scene's spheres, rays and hits as files into this folder, for other programs; of several
-    /// scenes each has a folder in it, called as the scene or its file
+    /// Measure nothing: write the scene's spheres, rays and hits as files into this folder, for
+    /// other programs; of several scenes each has a folder in it, called as the scene or its file
     #[arg(
         long,
         value_name = "FOLDER",

@@ -218,8 +218,8 @@ fn say(arguments: &RenderArguments, text: &str) {
 /// A device, and the reason for it.
 type Opened = Result<(Device, String)>;
 
-/// Reads the scene, and meanwhile opens the device if that is certain to be needed. Also returns how
-/// long after `started` the scene was read.
+/// Reads the scene, and meanwhile opens the device if that is certain to be needed. Also returns
+/// how long after `started` the scene was read.
 fn load_and_open(
     arguments: &RenderArguments,
     started: Instant,
@@ -400,8 +400,8 @@ fn say_what_is_written(
     );
 }
 
-/// Whether the device is opened while the file is read: it is a GPU for certain, and there is a file. What `auto` takes
-/// depends on what is in it.
+/// Whether the device is opened while the file is read: it is a GPU for certain, and there is a
+/// file. What `auto` takes depends on what is in it.
 fn opens_early(arguments: &RenderArguments) -> bool {
     let is_gpu = matches!(arguments.device, DeviceChoice::Gpu | DeviceChoice::Named(_));
     is_gpu && arguments.input.is_file()

@@ -14,10 +14,11 @@ use crate::scene::surroundings::Tonemap;
 impl Image {
     /// The image as 8-bit red, green, blue, row by row.
     ///
-    /// Light goes through the sRGB transfer curve (IEC 61966-2-1). Measurements do not: a normal n is
-    /// n · 0.5 + 0.5, depth is a grey that falls linearly from white at the nearest distance to black
-    /// at the farthest (see [`Image::depth_range`]), each sphere's index has a colour of its own, and flat red is as it is. Where nothing is
-    /// hit, light and flat red have the background, through the curve; the others are black.
+    /// Light goes through the sRGB transfer curve (IEC 61966-2-1). Measurements do not: a normal n
+    /// is n · 0.5 + 0.5, depth is a grey that falls linearly from white at the nearest distance to
+    /// black at the farthest (see [`Image::depth_range`]), each sphere's index has a colour of its
+    /// own, and flat red is as it is. Where nothing is hit, light and flat red have the background,
+    /// through the curve; the others are black.
     #[must_use]
     pub fn to_rgb8(&self) -> Vec<u8> {
         let mut bytes = vec![0; self.pixels.len() * 3];
@@ -100,8 +101,8 @@ impl Encoder {
         self.encode_pixels::<4>(&image.pixels[first..], bytes, straight, alpha);
     }
 
-    /// Fills `bytes` with `N` channels of as many pixels as there is room for: the colours of what `straight` makes
-    /// of each, and then, if there is one channel more, `alpha`.
+    /// Fills `bytes` with `N` channels of as many pixels as there is room for: the colours of what
+    /// `straight` makes of each, and then, if there is one channel more, `alpha`.
     fn encode_pixels<const N: usize>(
         &self,
         pixels: &[Pixel],
@@ -186,7 +187,8 @@ impl Encoder {
 
 /// A colour for an index, unlike those of the indices near it: each channel from 0.2 to 1.
 fn distinct(index: u32) -> [f32; 3] {
-    // The finaliser of MurmurHash3 (A. Appleby, 2008): each bit of the index changes half of the bits.
+    // The finaliser of MurmurHash3 (A. Appleby, 2008): each bit of the index changes half of the
+    // bits.
     let mut hash = index.wrapping_add(1);
     hash = (hash ^ hash >> 16).wrapping_mul(0x85eb_ca6b);
     hash = (hash ^ hash >> 13).wrapping_mul(0xc2b2_ae35);
@@ -215,11 +217,11 @@ pub fn from_srgb(encoded: f32) -> f32 {
     }
 }
 
-/// [`srgb`] as a byte, rounded to nearest, by a table: the power is what takes longest about a small
-/// scene's image.
+/// [`srgb`] as a byte, rounded to nearest, by a table: the power is what takes longest about a
+/// small scene's image.
 ///
-/// For each byte the smallest number that has it, and for numbers of the same leading bits the byte of the
-/// smallest among them.
+/// For each byte the smallest number that has it, and for numbers of the same leading bits the byte
+/// of the smallest among them.
 struct Curve {
     smallest: [f32; 257],
     first: Vec<u8>,

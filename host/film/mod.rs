@@ -32,8 +32,8 @@ pub struct Image {
     pub develop: Develop,
 }
 
-/// Room for what belongs to each pixel of an image, all of it zero. The system gives memory when it is first
-/// written, and so to the threads that do.
+/// Room for what belongs to each pixel of an image, all of it zero. The system gives memory when it
+/// is first written, and so to the threads that do.
 ///
 /// # Errors
 ///
@@ -93,8 +93,8 @@ impl Image {
         !self.alpha.is_empty() || !self.shading.quantity().has_background()
     }
 
-    /// How opaque the pixel with this index is, row by row from the upper left, from 0 to 1. Measurements are transparent where nothing is
-    /// hit.
+    /// How opaque the pixel with this index is, row by row from the upper left, from 0 to 1.
+    /// Measurements are transparent where nothing is hit.
     #[must_use]
     pub fn opacity(&self, index: usize) -> f32 {
         let is_there = self.shading.quantity().has_background()

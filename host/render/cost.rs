@@ -25,7 +25,8 @@ pub struct Cost {
     pub slowest: f64,
     /// How many runs there were.
     pub runs: usize,
-    /// Compiling the pipeline the first time; zero on the CPU. Drivers may have kept it from before.
+    /// Compiling the pipeline the first time; zero on the CPU. Drivers may have kept it from
+    /// before.
     pub compile_milliseconds: f64,
 }
 
@@ -35,9 +36,10 @@ pub fn frames(pipelines: usize) -> usize {
     pipelines.saturating_mul(1 + ROUNDS)
 }
 
-/// The costs of `scene` on `device` by the pipelines of each of `choices`. Only the first is certain to be
-/// measured: a frame that would not be done at `until`, by what frames took before, is not begun. `compiling` is what
-/// it took to compile the first before, if it was; it is not compiled again.
+/// The costs of `scene` on `device` by the pipelines of each of `choices`. Only the first is
+/// certain to be measured: a frame that would not be done at `until`, by what frames took before,
+/// is not begun. `compiling` is what it took to compile the first before, if it was; it is not
+/// compiled again.
 ///
 /// # Errors
 ///
@@ -52,7 +54,8 @@ pub fn measure(
     progress: Progress<'_>,
 ) -> Result<Vec<Option<Cost>>> {
     let mut times: Vec<Vec<Duration>> = vec![Vec::new(); choices.len()];
-    // The longest frame of the first round, with all that is around it, and its last by each pipeline.
+    // The longest frame of the first round, with all that is around it, and its last by each
+    // pipeline.
     let mut longest = compiling;
     let mut compiled = vec![Duration::ZERO; choices.len()];
     let mut last = vec![Duration::ZERO; choices.len()];

@@ -1,4 +1,5 @@
-//! The CPU path: squares of camera rays, over bands of rows, and the kernel's functions for what they hit.
+//! The CPU path: squares of camera rays, over bands of rows, and the kernel's functions for what
+//! they hit.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
@@ -23,7 +24,8 @@ use crate::scene::World;
 /// From how many spheres on a tree pays for squares of camera rays: 8 with AVX-512.
 const MIN_SPHERES: usize = 12;
 
-/// After so many squares at most it is asked whether the render goes on; after fewer where they take longer than this.
+/// After so many squares at most it is asked whether the render goes on; after fewer where they
+/// take longer than this.
 const SQUARES: usize = 16;
 const PATIENCE: Duration = Duration::from_millis(5);
 
@@ -51,12 +53,13 @@ impl<'a> Prepared<'a> {
     }
 }
 
-/// Renders `launch`, which covers a whole image, on every thread of the pool. Where `progress` breaks off, the pixels that
-/// were not reached are [not written](Pixel::is_written).
+/// Renders `launch`, which covers a whole image, on every thread of the pool. Where `progress`
+/// breaks off, the pixels that were not reached are [not written](Pixel::is_written).
 ///
 /// # Errors
 ///
-/// [`OutOfHostMemory`](crate::Error::OutOfHostMemory) if the host has no room for the image, and as [`render_to`].
+/// [`OutOfHostMemory`](crate::Error::OutOfHostMemory) if the host has no room for the image, and as
+/// [`render_to`].
 pub fn render(
     launch: &Launch,
     world: &Prepared<'_>,
@@ -69,12 +72,13 @@ pub fn render(
     Ok(pixels)
 }
 
-/// [`render`] to where an image was before: `pixels`, row by row, of which there are as many as the launch has. Where
-/// `progress` breaks off, pixels that were not reached stay as they are.
+/// [`render`] to where an image was before: `pixels`, row by row, of which there are as many as the
+/// launch has. Where `progress` breaks off, pixels that were not reached stay as they are.
 ///
 /// # Errors
 ///
-/// [`Error::Scene`](crate::Error::Scene) if the launch covers no part of an image, or has not as many pixels.
+/// [`Error::Scene`](crate::Error::Scene) if the launch covers no part of an image, or has not as
+/// many pixels.
 pub fn render_to(
     pixels: &mut [Pixel],
     launch: &Launch,
@@ -180,8 +184,8 @@ fn bands<const RUNG: u32>(render: Render<'_>) {
         });
 }
 
-/// Writes what a square has hit to the rows of an image, `width` pixels wide, from its pixel `left` on. A function of its own, because what
-/// is asked between squares takes registers.
+/// Writes what a square has hit to the rows of an image, `width` pixels wide, from its pixel `left`
+/// on. A function of its own, because what is asked between squares takes registers.
 #[inline(never)]
 fn shade<const SHADING: u32>(
     pixels: &mut [Pixel],

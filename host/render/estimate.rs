@@ -1,9 +1,9 @@
 //! Whether an image is traced on the CPU before a GPU is so much as open.
 //!
-//! To open a GPU takes 30 to 300 ms, most of it the driver's start, so that for a small image it has
-//! nothing to give, however fast it is. The times here are of one thread of a Sapphire Rapids at 2 to 3 GHz,
-//! `spherule render --device cpu --stats -` of two spheres and of the scenes with light paths, and `spherule bench` of
-//! R10k to R1M.
+//! To open a GPU takes 30 to 300 ms, most of it the driver's start, so that for a small image it
+//! has nothing to give, however fast it is. The times here are of one thread of a Sapphire Rapids
+//! at 2 to 3 GHz, `spherule render --device cpu --stats -` of two spheres and of the scenes with
+//! light paths, and `spherule bench` of R10k to R1M.
 
 use std::time::Duration;
 
@@ -14,14 +14,16 @@ use crate::scene::Scene;
 
 /// What opening a GPU takes at least, and some milliseconds for bringing the image back.
 const OPENING: Duration = Duration::from_millis(40);
-/// A camera ray and its pixel, in seconds, and what grows with the square root of the number of spheres.
+/// A camera ray and its pixel, in seconds, and what grows with the square root of the number of
+/// spheres.
 const RAY: f64 = 25e-9;
 const RAY_AMONG_MANY: f64 = 0.1e-9;
 /// A light path with its shadow rays.
 const PATH: f64 = 1e-6;
 
-/// How long tracing takes on so many threads of a CPU, by the number of pixels, samples and spheres alone:
-/// right to a factor of three or so. [`Duration::MAX`] where that is too much for a duration.
+/// How long tracing takes on so many threads of a CPU, by the number of pixels, samples and spheres
+/// alone: right to a factor of three or so. [`Duration::MAX`] where that is too much for a
+/// duration.
 #[must_use]
 pub fn on_cpu(scene: &Scene, shading: Shading, effects: EffectChoice, threads: usize) -> Duration {
     let pixels = f64::from(scene.width) * f64::from(scene.height);

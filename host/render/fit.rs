@@ -1,4 +1,5 @@
-//! [`fit`]: how large an image may be, and of how many samples, to be measured in the time there is.
+//! [`fit`]: how large an image may be, and of how many samples, to be measured in the time there
+//! is.
 
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
@@ -8,22 +9,24 @@ use crate::device::Device;
 use crate::error::Result;
 use crate::scene::Scene;
 
-/// The pixels of the smallest image. Where light paths are as long as they may be, even these few take a part of a second.
+/// The pixels of the smallest image. Where light paths are as long as they may be, even these few
+/// take a part of a second.
 const LEAST: f64 = 64.0;
 /// The pixels of an image that has fewer samples instead of fewer pixels.
 const FAIR: f64 = 8192.0;
 /// The fewest samples of an image that has several: one alone is no antialiasing.
 const FEWEST: u32 = 2;
-/// How many more samples of all pixels there are from one frame to the next, at most: small images tell little of
-/// what large ones take.
+/// How many more samples of all pixels there are from one frame to the next, at most: small images
+/// tell little of what large ones take.
 const MOST_GROWTH: f64 = 16.0;
 /// By how much they must become more for another frame to be worth its time.
 const LEAST_GROWTH: f64 = 1.2;
 /// The part of the time there is that one frame may take to be found too large.
 const SHARE: f64 = 0.5;
 
-/// Makes the image of `scene` smaller, and its samples fewer, where a frame would take longer than `limit`. `frame` renders
-/// one and says how long it took. It begins with few pixels, whatever the shape of the image.
+/// Makes the image of `scene` smaller, and its samples fewer, where a frame would take longer than
+/// `limit`. `frame` renders one and says how long it took. It begins with few pixels, whatever the
+/// shape of the image.
 ///
 /// # Errors
 ///
@@ -70,7 +73,8 @@ pub fn fit(
     Ok(())
 }
 
-/// The size of an image of about so many pixels: of the shape of one of `whole`, as far as no side is shorter than a pixel.
+/// The size of an image of about so many pixels: of the shape of one of `whole`, as far as no side
+/// is shorter than a pixel.
 fn size(whole: (u32, u32), pixels: f64) -> (u32, u32) {
     let (width, height) = (f64::from(whole.0), f64::from(whole.1));
     let share = (pixels / (width * height)).sqrt().min(1.0);
@@ -91,9 +95,10 @@ fn size(whole: (u32, u32), pixels: f64) -> (u32, u32) {
     }
 }
 
-/// Renders a frame of `scene` to see what it takes. It is broken off after a part of the time that is left until `until`, because
-/// that is to be enough for others after it. Returns how long the frame took, [`Duration::MAX`] if it was broken off, and how long
-/// compiling took, which does not count.
+/// Renders a frame of `scene` to see what it takes. It is broken off after a part of the time that
+/// is left until `until`, because that is to be enough for others after it. Returns how long the
+/// frame took, [`Duration::MAX`] if it was broken off, and how long compiling took, which does not
+/// count.
 ///
 /// # Errors
 ///

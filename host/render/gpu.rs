@@ -21,8 +21,9 @@ use crate::film;
 use crate::kernel_module;
 use crate::scene::World;
 
-/// From how many spheres on a tree is grown. Where they lie evenly, lists for each tile are up to four times as fast and stay ahead up to
-/// 30,000; where most lie in a few tiles, a tree is ahead long before, and at 5,000 six times as fast.
+/// From how many spheres on a tree is grown. Where they lie evenly, lists for each tile are up to
+/// four times as fast and stay ahead up to 30,000; where most lie in a few tiles, a tree is ahead
+/// long before, and at 5,000 six times as fast.
 const MIN_FOR_TREE: usize = 512;
 /// From this many spheres on, those without a tree are listed for each tile.
 const MIN_FOR_LISTS: usize = 16;
@@ -51,7 +52,8 @@ impl Search {
         }
     }
 
-    /// What a pixel takes with so many spheres, in intersections: a guess, of which [`Pace`] learns more.
+    /// What a pixel takes with so many spheres, in intersections: a guess, of which [`Pace`] learns
+    /// more.
     fn work(self, spheres: u64) -> u64 {
         match self {
             Self::Tree => 100,
@@ -60,7 +62,8 @@ impl Search {
         }
     }
 
-    /// How many spheres of `left` take about as many intersections, or the fewest that can be asked for.
+    /// How many spheres of `left` take about as many intersections, or the fewest that can be asked
+    /// for.
     fn spheres(self, work: u32, left: u32) -> u32 {
         match self {
             Self::Tree => left,
@@ -177,8 +180,8 @@ impl Prepared {
     }
 }
 
-/// Renders `launch`, which covers a whole image, on `gpu`. Where `progress` breaks off, the pixels that were not reached are
-/// [not written](Pixel::is_written).
+/// Renders `launch`, which covers a whole image, on `gpu`. Where `progress` breaks off, the pixels
+/// that were not reached are [not written](Pixel::is_written).
 ///
 /// # Errors
 ///
@@ -243,8 +246,8 @@ pub fn time(gpu: &Gpu, launch: &Launch, world: &Prepared) -> Result<Duration> {
     Ok(all.trace)
 }
 
-/// Renders a launch tile by tile, for as long as `progress` goes on. `finished` is told where a tile's pixels are, which of the
-/// image its first is, and how many there are.
+/// Renders a launch tile by tile, for as long as `progress` goes on. `finished` is told where a
+/// tile's pixels are, which of the image its first is, and how many there are.
 fn each_tile(
     gpu: &Gpu,
     launch: &Launch,
@@ -302,8 +305,9 @@ struct Target {
     staging: Staging,
 }
 
-/// Renders one tile against every part of the world. Returns how long that took, and whether every sphere was tested: not where
-/// `goes_on`, which is asked between launches and told the share of the spheres that were, says no.
+/// Renders one tile against every part of the world. Returns how long that took, and whether every
+/// sphere was tested: not where `goes_on`, which is asked between launches and told the share of
+/// the spheres that were, says no.
 fn render_tile(
     gpu: &Gpu,
     launch: &Launch,

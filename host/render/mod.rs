@@ -141,7 +141,8 @@ pub fn render(
     })
 }
 
-/// Breaks off as `progress` does, and when the time, which begins now, is up. `is_late` learns that.
+/// Breaks off as `progress` does, and when the time, which begins now, is up. `is_late` learns
+/// that.
 fn within<'a>(
     limit: Option<Duration>,
     is_late: &'a AtomicBool,
@@ -157,8 +158,8 @@ fn within<'a>(
     }
 }
 
-/// Makes pixels that no kernel has written black ones that show no sphere, and returns how opaque each pixel is; nothing if all are
-/// there, or if there is no memory for it.
+/// Makes pixels that no kernel has written black ones that show no sphere, and returns how opaque
+/// each pixel is; nothing if all are there, or if there is no memory for it.
 fn blank_the_rest(pixels: &mut [Pixel]) -> Vec<f32> {
     if pixels.iter().all(Pixel::is_written) {
         return Vec::new();

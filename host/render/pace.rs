@@ -12,10 +12,11 @@ use crate::device::Gpu;
 
 /// What one launch should take.
 const TARGET: Duration = Duration::from_millis(200);
-/// The first launch's work on a software adapter, in intersections: a second on the slowest one seen.
+/// The first launch's work on a software adapter, in intersections: a second on the slowest one
+/// seen.
 const FIRST_IN_SOFTWARE: u64 = 1 << 27;
-/// The first launch's work on a GPU: a quarter of a millisecond on a fast one, a tenth of a second on a slow one.
-/// Small launches cost: each waits for the last of its threads.
+/// The first launch's work on a GPU: a quarter of a millisecond on a fast one, a tenth of a second
+/// on a slow one. Small launches cost: each waits for the last of its threads.
 const FIRST_ON_GPU: u64 = 1 << 30;
 /// No tile is smaller than this, however many spheres there are: fewer threads leave a GPU idle,
 /// and then a launch takes as long however little it does. The spheres are split instead.

@@ -1,15 +1,17 @@
 //! Camera rays on the CPU, a square of pixels at once.
 //!
 //! The rays of a square share their origin. Four planes through the eye and the sides of the square
-//! bound them all, so that boxes are tested once for 64 rays; the eight boxes of a node are tested side by side.
-//! Four more planes along the square's middle tell which of its quarters a sphere may be seen in.
-//! There it is tested against 16 rays side by side by the few operations of [`candidates`](spherule_kernel::cull::discriminant), and
-//! only what may be a hit is asked about on its rung: on [`Rung::Robust`] and [`Rung::Double`] 16 rays side by side again, with the
-//! very operations of the kernel, in their order; on [`Rung::Compensated`] and [`Rung::Certified`] about the nearest at the end,
-//! and about what [`bounds`](spherule_kernel::cull::bounds) leave open.
+//! bound them all, so that boxes are tested once for 64 rays; the eight boxes of a node are tested
+//! side by side. Four more planes along the square's middle tell which of its quarters a sphere may
+//! be seen in. There it is tested against 16 rays side by side by the few operations of
+//! [`candidates`](spherule_kernel::cull::discriminant), and only what may be a hit is asked about
+//! on its rung: on [`Rung::Robust`] and [`Rung::Double`] 16 rays side by side again, with the very
+//! operations of the kernel, in their order; on [`Rung::Compensated`] and [`Rung::Certified`] about
+//! the nearest at the end, and about what [`bounds`](spherule_kernel::cull::bounds) leave open.
 //!
-//! The formulas are the kernel's, over [`Single16`] and [`Double16`]. Loops over the eight boxes of a node become vector
-//! instructions; all is compiled for each instruction set, and chosen by the packet's [`InstructionSet`].
+//! The formulas are the kernel's, over [`Single16`] and [`Double16`]. Loops over the eight boxes of
+//! a node become vector instructions; all is compiled for each instruction set, and chosen by the
+//! packet's [`InstructionSet`].
 
 use fearless_simd::{Level, Select, Simd, SimdBase, SimdMask, dispatch, mask32x16, u32x16};
 use glam::{DVec3, UVec2, UVec4, Vec2, Vec3};
@@ -28,8 +30,9 @@ pub const SIDE: usize = 8;
 const RAYS: usize = SIDE * SIDE;
 const GROUPS: usize = RAYS / LANES;
 const WIDTH: usize = Node::WIDTH;
-/// The squares of the directions' lengths for which [`bounds`](spherule_kernel::cull::bounds) hold without scaling, which wants 1/|d| to be 1 at most: that of
-/// a camera's rays is, but for its rounding.
+/// The squares of the directions' lengths for which [`bounds`](spherule_kernel::cull::bounds) hold
+/// without scaling, which wants 1/|d| to be 1 at most: that of a camera's rays is, but for its
+/// rounding.
 const SQUARES: std::ops::Range<f32> = 0.999..(1_u64 << 40) as f32;
 /// 32u, u = 2⁻²⁴: what a box test may be off by for its terms, twice over.
 const SLACK: f32 = 32.0 / (1 << 24) as f32;
@@ -55,11 +58,12 @@ pub struct Packet {
     /// The nearest hit so far, or the end of the ray; and its sphere.
     t: [Lanes; GROUPS],
     sphere: [[u32; LANES]; GROUPS],
-    /// Where a sphere must certainly be hit before to be nearer; and a bit where the rung was not asked about the
-    /// nearest, so that `t` is where it is hit at most.
+    /// Where a sphere must certainly be hit before to be nearer; and a bit where the rung was not
+    /// asked about the nearest, so that `t` is where it is hit at most.
     low: [Lanes; GROUPS],
     are_unasked: [u32; GROUPS],
-    /// Whether directions are of such length that [`bounds`](spherule_kernel::cull::bounds) hold for them as they are.
+    /// Whether directions are of such length that [`bounds`](spherule_kernel::cull::bounds) hold
+    /// for them as they are.
     has_bounds: bool,
     /// The largest t of each group.
     end: [f32; GROUPS],
@@ -68,15 +72,18 @@ pub struct Packet {
     frustum: Frustum,
 }
 
-/// What bounds the rays of each square of an image: what a column or a row of squares shares is worked out once.
+/// What bounds the rays of each square of an image: what a column or a row of squares shares is
+/// worked out once.
 #[derive(Clone, Debug)]
 pub struct Frusta {
-    /// Of each column of squares the planes on its left and its right, and between its halves: on the right of the left one, on the
-    /// left of the right one.
+    /// Of each column of squares the planes on its left and its right, and between its halves: on
+    /// the right of the left one, on the left of the right one.
     columns: Vec<[Plane; 4]>,
-    /// Of each row of squares the planes above and below it, below its upper half, and above its lower half.
+    /// Of each row of squares the planes above and below it, below its upper half, and above its
+    /// lower half.
     rows: Vec<[Plane; 4]>,
-    /// Where the pixels of each column and row of squares are on the film; those beyond the image are repeated ones.
+    /// Where the pixels of each column and row of squares are on the film; those beyond the image
+    /// are repeated ones.
     across: Vec<[f32; SIDE]>,
     upwards: Vec<[f32; SIDE]>,
     forward: Plane,
@@ -93,8 +100,8 @@ impl Frusta {
             let pixel = launch.tile_origin + UVec2::new(x, y).min(last);
             Camera::film(pixel, launch.image_size)
         };
-        // Through the rays at x, or at y, and towards a side. A camera whose axes lie in a plane has none, and
-        // every box is inside.
+        // Through the rays at x, or at y, and towards a side. A camera whose axes lie in a plane
+        // has none, and every box is inside.
         let plane = |normal: DVec3, towards: DVec3| {
             let normal = normal.normalize_or_zero();
             Plane::farthest((normal * normal.dot(towards).signum()).as_vec3())
@@ -154,12 +161,13 @@ impl Frusta {
 /// What bounds the rays of a square.
 #[derive(Clone, Copy, Debug)]
 struct Frustum {
-    /// Four planes through the origin, with inward normals, and of each box what is farthest along them.
+    /// Four planes through the origin, with inward normals, and of each box what is farthest along
+    /// them.
     planes: [Plane; 4],
     /// The direction along which the rays' parameters are depths, and of each box what is nearest.
     forward: Plane,
-    /// The normals of these planes and of those between the halves: on the right of the left one, on the left of the right one,
-    /// below the upper one, above the lower one.
+    /// The normals of these planes and of those between the halves: on the right of the left one,
+    /// on the left of the right one, below the upper one, above the lower one.
     x: [f32; 8],
     y: [f32; 8],
     z: [f32; 8],
@@ -175,8 +183,8 @@ impl Frustum {
         z: [0.0; 8],
     };
 
-    /// Which quarters of the square a sphere around `o`, told from the eye, may be seen in: a bit for each group of rays. It is as large
-    /// as `reach`, what it may be off by counted in.
+    /// Which quarters of the square a sphere around `o`, told from the eye, may be seen in: a bit
+    /// for each group of rays. It is as large as `reach`, what it may be off by counted in.
     #[inline(always)]
     fn quarters(&self, o: Vec3, reach: f32) -> u32 {
         /// By what is beyond the planes between the halves.
@@ -247,7 +255,8 @@ impl Plane {
         std::array::from_fn(|child| in_x[child] * x + (in_y[child] * y + (in_z[child] * z + first)))
     }
 
-    /// What [`along`](Plane::along) may be off by, and boxes be wider, if coordinates are off by this.
+    /// What [`along`](Plane::along) may be off by, and boxes be wider, if coordinates are off by
+    /// this.
     #[inline(always)]
     fn slack(&self, off: f32) -> f32 {
         self.normal.abs().element_sum() * off
@@ -288,7 +297,8 @@ impl Packet {
         }
     }
 
-    /// Takes the rays of the square whose upper left pixel is `corner`, counted from that of the tile.
+    /// Takes the rays of the square whose upper left pixel is `corner`, counted from that of the
+    /// tile.
     #[inline(always)]
     fn aim(&mut self, launch: &Launch, frusta: &Frusta, corner: UVec2) {
         self.frustum = frusta.at(corner);
@@ -403,8 +413,8 @@ impl Packet {
         }
     }
 
-    /// Takes the sphere where it is the nearest for certain, and tells for which rays the rung is to be asked, a bit each:
-    /// [`bounds`](spherule_kernel::cull::bounds) for 16 rays.
+    /// Takes the sphere where it is the nearest for certain, and tells for which rays the rung is
+    /// to be asked, a bit each: [`bounds`](spherule_kernel::cull::bounds) for 16 rays.
     #[inline(always)]
     fn test_bounds<S: Simd>(&mut self, simd: S, group: usize, sphere: Sphere, index: u32) -> u32 {
         let aim = Aim {
@@ -512,7 +522,8 @@ impl Packet {
             Single16::load(simd, &self.inverse[group].0),
         );
         let (meets, inner) = (quadratic.meets(), quadratic.inner());
-        // Where all that meet it do so ahead, and first in the interval, the other root is not asked for.
+        // Where all that meet it do so ahead, and first in the interval, the other root is not
+        // asked for.
         let is_first = inner.simd_ge(Single16::splat(simd, self.t_min));
         if (meets & !(quadratic.is_ahead() & is_first)).any_true() {
             let (near, far) = quadratic.roots();
@@ -544,8 +555,8 @@ impl Packet {
         self.take(simd, group, index, meets, near.rounded(), far.rounded());
     }
 
-    /// Takes the smaller of two roots that is in the interval, where the line meets the sphere, and where
-    /// it is nearer than what was found, or as near and of lower index.
+    /// Takes the smaller of two roots that is in the interval, where the line meets the sphere, and
+    /// where it is nearer than what was found, or as near and of lower index.
     #[inline(always)]
     fn take<S: Simd>(
         &mut self,
@@ -603,8 +614,8 @@ const fn place(index: usize) -> (usize, usize) {
     (y / 4 * 2 + x / 4, y % 4 * 4 + x % 4)
 }
 
-/// Finds the nearest hits of the rays through the square of pixels at `corner`, counted from the tile's
-/// upper left, on the rung `RUNG`: in a tree or, without nodes, among all spheres.
+/// Finds the nearest hits of the rays through the square of pixels at `corner`, counted from the
+/// tile's upper left, on the rung `RUNG`: in a tree or, without nodes, among all spheres.
 pub fn trace<const RUNG: u32>(
     packet: &mut Packet,
     launch: &Launch,

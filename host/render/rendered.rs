@@ -8,13 +8,14 @@ use crate::film::Image;
 /// An image, and what it took.
 #[derive(Debug)]
 pub struct Rendered {
-    /// The image. Pixels that no ray was traced for are transparent, and black where nothing shows that;
-    /// where a time limit left them out of an image of samples, they show a coarse preview instead.
+    /// The image. Pixels that no ray was traced for are transparent, and black where nothing shows
+    /// that; where a time limit left them out of an image of samples, they show a coarse preview
+    /// instead.
     pub image: Image,
     /// How many pixels a ray was traced for: all, unless the render was stopped early.
     pub traced: u64,
-    /// How many camera rays were traced for the image: one for each sample of each pixel, and none for a preview. Light paths go
-    /// on from there.
+    /// How many camera rays were traced for the image: one for each sample of each pixel, and none
+    /// for a preview. Light paths go on from there.
     pub rays: u64,
     /// What it took.
     pub timings: Timings,
@@ -23,8 +24,8 @@ pub struct Rendered {
 }
 
 impl Rendered {
-    /// Whether each pixel was traced, and nothing broke off its samples: a time limit or a noise target that was reached
-    /// did not.
+    /// Whether each pixel was traced, and nothing broke off its samples: a time limit or a noise
+    /// target that was reached did not.
     #[must_use]
     pub fn is_complete(&self) -> bool {
         let pixels = u64::from(self.image.width()) * u64::from(self.image.height());

@@ -9,12 +9,12 @@ use crate::scene::Scene;
 /// Memory for all that is small, in bytes.
 const MARGIN: u64 = 4 << 20;
 
-/// What a texel of the surroundings takes at most while tables are made of it: its probability, its share of a vector that grows, and the
-/// table.
+/// What a texel of the surroundings takes at most while tables are made of it: its probability, its
+/// share of a vector that grows, and the table.
 const BYTES_A_TEXEL: u64 = 64;
 
-/// Whether there is memory for the image of `scene`, of which each pixel takes so many bytes on the host, and for the tree: what is
-/// computed is not to be lost for want of it.
+/// Whether there is memory for the image of `scene`, of which each pixel takes so many bytes on the
+/// host, and for the tree: what is computed is not to be lost for want of it.
 ///
 /// # Errors
 ///

@@ -77,8 +77,9 @@ impl EffectChoice {
 
 /// Told how far a render is, a number from 0 to 1, and asked whether it goes on.
 ///
-/// It is called from any thread, every few milliseconds of each on a CPU and after each launch on a GPU, and so must be quick. Where it
-/// breaks off, the render ends with what it has: see [`is_complete`](super::Rendered::is_complete).
+/// It is called from any thread, every few milliseconds of each on a CPU and after each launch on a
+/// GPU, and so must be quick. Where it breaks off, the render ends with what it has: see
+/// [`is_complete`](super::Rendered::is_complete).
 pub type Progress<'a> = &'a (dyn Fn(f64) -> ControlFlow<()> + Sync);
 
 /// Ignores progress, and always goes on.

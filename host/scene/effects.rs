@@ -251,7 +251,8 @@ impl Scene {
             .collect()
     }
 
-    /// Whether an image with these effects is random. Of several hard lights one is chosen by chance.
+    /// Whether an image with these effects is random. Of several hard lights one is chosen by
+    /// chance.
     fn is_random(&self, effects: Effects) -> bool {
         let sun = self.sky.as_ref().and_then(|sky| sky.sun);
         let hard = self.lights.len() + usize::from(sun.is_some_and(|sun| sun.size == 0.0));

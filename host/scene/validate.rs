@@ -12,9 +12,10 @@ use super::{Scene, Surroundings, View};
 use crate::error::{Error, Result, SceneError};
 
 impl Scene {
-    /// Whether the scene can be rendered: every number is in its range of [`limits`], every index names something, and what runs
-    /// in parallel is as long as it must be. That is all that a scene file is refused for, but that a scene without spheres is taken here:
-    /// a frame of a simulation may be empty.
+    /// Whether the scene can be rendered: every number is in its range of [`limits`], every index
+    /// names something, and what runs in parallel is as long as it must be. That is all that a
+    /// scene file is refused for, but that a scene without spheres is taken here: a frame of a
+    /// simulation may be empty.
     ///
     /// [`render`](crate::render::render()) asks this first.
     ///

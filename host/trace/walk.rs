@@ -1,5 +1,5 @@
-//! The walk of [`Single`](super::single::Single) on machines with wide instructions: all eight boxes
-//! of a node at once.
+//! The walk of [`Single`](super::single::Single) on machines with wide instructions: all eight
+//! boxes of a node at once.
 //!
 //! It differs from the kernel's walk: the nearest box is entered first, a box beyond the nearest
 //! hit is skipped when its turn comes, and four rays take turns, so that a ray that waits does not

@@ -1,4 +1,5 @@
-//! `OpenEXR`, 32-bit floats, some tiles at a time: all threads compress them, then they are written.
+//! `OpenEXR`, 32-bit floats, some tiles at a time: all threads compress them, then they are
+//! written.
 
 use exr::block::{self, UncompressedBlock, writer::ChunksWriter};
 use exr::meta::attribute::{ChannelDescription, SampleType};
@@ -24,7 +25,8 @@ fn tiles(width: u32, height: u32) -> u64 {
 pub(super) fn room(width: u32, height: u32, has_alpha: bool) -> u64 {
     let tile = TILE * TILE * if has_alpha { 16 } else { 12 };
     let threads = rayon::current_num_threads() as u64;
-    // A tile, its bytes in another order, compressed, and as it is kept. Each has a place in the table of offsets.
+    // A tile, its bytes in another order, compressed, and as it is kept. Each has a place in the
+    // table of offsets.
     4 * tile * threads * TILES_A_THREAD as u64 + 24 * tiles(width, height)
 }
 
@@ -107,7 +109,8 @@ pub(super) fn write(image: &Image, sink: Sink<'_>, trouble: &Trouble) -> Result<
     Ok(())
 }
 
-/// One channel of the pixels from the one with the index `first` on, as bytes in the machine's order.
+/// One channel of the pixels from the one with the index `first` on, as bytes in the machine's
+/// order.
 fn put_line(image: &Image, first: usize, channel: Channel, bytes: &mut [u8]) {
     let (words, _) = bytes.as_chunks_mut::<4>();
     let pixels = &image.pixels()[first..];

@@ -1,4 +1,5 @@
-//! PNG, 8 bits a channel, a band of rows at a time: all threads convert them, then they are compressed.
+//! PNG, 8 bits a channel, a band of rows at a time: all threads convert them, then they are
+//! compressed.
 
 use std::io::{Seek, Write};
 
@@ -10,7 +11,8 @@ use super::sink::{Sink, Trouble};
 use crate::film::Image;
 use crate::film::encode;
 
-/// How rows are prepared for compression: to choose anew for each row takes as long as to compress them.
+/// How rows are prepared for compression: to choose anew for each row takes as long as to compress
+/// them.
 const FILTER: Filter = Filter::Up;
 /// What is converted at once, in bytes, or else one row.
 const BAND: usize = 1 << 20;
@@ -59,7 +61,8 @@ pub(super) fn write(image: &Image, mut sink: Sink<'_>, trouble: &Trouble) -> Res
     Ok(())
 }
 
-/// The image without compression: a zlib stream (RFC 1950) of stored blocks (RFC 1951), each in a chunk of its own.
+/// The image without compression: a zlib stream (RFC 1950) of stored blocks (RFC 1951), each in a
+/// chunk of its own.
 fn write_stored(image: &Image, sink: &mut Sink<'_>, trouble: &Trouble) -> Result<(), Failure> {
     const UNFILTERED: u8 = 0;
     let mut writer = header(image, sink)?;
@@ -224,7 +227,8 @@ mod tests {
         bytes
     }
 
-    /// Whether of one band or of several, with compression or without, the file holds the image's bytes.
+    /// Whether of one band or of several, with compression or without, the file holds the image's
+    /// bytes.
     #[test]
     fn pixels_are_those_of_the_whole_image() {
         for (width, height) in [(1, 1), (7, 3), (1000, 1001), (350_000, 5)] {

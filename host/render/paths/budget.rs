@@ -27,8 +27,8 @@ pub enum StoppedBy {
 /// How far a render came.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Reached {
-    /// The fewest samples that any pixel has. Where time ran out or the render was broken off, others may have more; each
-    /// pixel is the mean of its own.
+    /// The fewest samples that any pixel has. Where time ran out or the render was broken off,
+    /// others may have more; each pixel is the mean of its own.
     pub samples: u32,
     /// How many were asked for.
     pub asked: u32,

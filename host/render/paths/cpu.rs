@@ -21,7 +21,8 @@ use crate::trace::single::Single;
 
 /// Rows in a band.
 const BAND_ROWS: usize = 2;
-/// After so many pixels at most it is asked whether the render goes on; after fewer where they take longer than this.
+/// After so many pixels at most it is asked whether the render goes on; after fewer where they take
+/// longer than this.
 const RUN: usize = 16;
 const PATIENCE: Duration = Duration::from_millis(5);
 
@@ -63,7 +64,8 @@ pub fn render(prepared: &Prepared, settings: &Settings, progress: Progress<'_>) 
     let size = prepared.launch.image_size;
     let levels = Levels::of(prepared.nodes.tree());
     let mut accumulators = film::allocate::<Accumulator>(size.x, size.y)?;
-    // Traces until `goes_on`, which is told the share of the pixels that are done, says no; whether it never did.
+    // Traces until `goes_on`, which is told the share of the pixels that are done, says no; whether
+    // it never did.
     let pass = |launch: &PathLaunch,
                 accumulators: &mut [Accumulator],
                 goes_on: &(dyn Fn(f64) -> bool + Sync)| {
@@ -229,8 +231,8 @@ fn trace<const EFFECTS: u32, const RUNG: u32>(
         });
 }
 
-/// Traces some pixels, of an image so wide, from the one with index `first` on. A function of its own, because what is asked
-/// between runs takes registers.
+/// Traces some pixels, of an image so wide, from the one with index `first` on. A function of its
+/// own, because what is asked between runs takes registers.
 #[inline(never)]
 fn trace_run<const EFFECTS: u32, const RUNG: u32>(
     scenery: &Scenery<'_, Single<'_>>,

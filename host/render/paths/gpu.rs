@@ -27,11 +27,12 @@ const ENTRY: &str = "trace_paths";
 const TESTS_IN_A_TREE: u64 = 256;
 /// Rays of one sample of one pixel, for the size of the first launch.
 const RAYS_A_SAMPLE: u64 = 4;
-/// The fewest pixels of a launch: fewer threads leave a GPU idle, and then it takes as long however little it does.
+/// The fewest pixels of a launch: fewer threads leave a GPU idle, and then it takes as long however
+/// little it does.
 const FEWEST_ON_GPU: u64 = 1 << 16;
 const FEWEST_IN_SOFTWARE: u64 = 1 << 12;
-/// How many turns Mesa's software adapter, llvmpipe, takes in all of the loops of a thread together: it leaves them after that without a
-/// word.
+/// How many turns Mesa's software adapter, llvmpipe, takes in all of the loops of a thread
+/// together: it leaves them after that without a word.
 const TURNS_IN_SOFTWARE: u64 = u16::MAX as u64;
 /// The turns of a ray through a tree, for the same.
 const TURNS_IN_A_TREE: u64 = 64;
@@ -69,7 +70,8 @@ struct Launcher<'a> {
     sums: Buffer<Accumulator>,
     /// What they are read through.
     staging: Staging,
-    /// What a sample takes, in intersections; the fewest pixels of a launch; and what it gets as far as is known.
+    /// What a sample takes, in intersections; the fewest pixels of a launch; and what it gets as
+    /// far as is known.
     work: u64,
     fewest: u64,
     pace: Pace,
@@ -105,8 +107,8 @@ impl<'a> Launcher<'a> {
             sums,
             work,
             fewest,
-            // What a sample takes by fog, glass or bounces is known only from the first of them. On a GPU few pixels take as
-            // long as many.
+            // What a sample takes by fog, glass or bounces is known only from the first of them. On
+            // a GPU few pixels take as long as many.
             pace: if gpu.is_software() {
                 Pace::starting_at(work * fewest)
             } else {
@@ -115,8 +117,9 @@ impl<'a> Launcher<'a> {
         })
     }
 
-    /// Adds the samples of `launch`, some of its rows after the other, so that no launch takes long. Between them `goes_on` is told
-    /// how many pixels are done. Returns how many are done in the end, and how long they took.
+    /// Adds the samples of `launch`, some of its rows after the other, so that no launch takes
+    /// long. Between them `goes_on` is told how many pixels are done. Returns how many are done in
+    /// the end, and how long they took.
     fn pass(
         &mut self,
         launch: &PathLaunch,
@@ -165,7 +168,8 @@ impl<'a> Launcher<'a> {
     }
 }
 
-/// The most samples of a launch: a small image is else given so many that a software adapter does not take all of them.
+/// The most samples of a launch: a small image is else given so many that a software adapter does
+/// not take all of them.
 fn most_samples(gpu: &Gpu, prepared: &Prepared) -> u32 {
     if !gpu.is_software() {
         return u32::MAX;
@@ -180,7 +184,8 @@ fn most_samples(gpu: &Gpu, prepared: &Prepared) -> u32 {
     (TURNS_IN_SOFTWARE / turns) as u32
 }
 
-/// How many rows make at least so many pixels, if each launch's first is to lie in memory where the device takes it.
+/// How many rows make at least so many pixels, if each launch's first is to lie in memory where the
+/// device takes it.
 fn rows(width: u32, pixels: u64, alignment: u32) -> u32 {
     let pixel = size_of::<Accumulator>() as u64;
     let mut step = 1;
@@ -196,7 +201,8 @@ fn rows(width: u32, pixels: u64, alignment: u32) -> u32 {
 /// # Errors
 ///
 /// The device's errors, [`Error::RungRefused`] if the canary objects to the rung,
-/// [`Error::Readback`] if a thread wrote no pixel, and [`Error::Scene`] if the launch is not one of a whole image.
+/// [`Error::Readback`] if a thread wrote no pixel, and [`Error::Scene`] if the launch is not one of
+/// a whole image.
 pub fn render(
     gpu: &Gpu,
     prepared: &Prepared,

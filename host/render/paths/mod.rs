@@ -137,7 +137,8 @@ fn into_pixels(sums: Vec<Accumulator>) -> Vec<Pixel> {
     pixels
 }
 
-/// A depth of exactly zero is a pixel that no kernel wrote; none was traced for a pixel without samples.
+/// A depth of exactly zero is a pixel that no kernel wrote; none was traced for a pixel without
+/// samples.
 fn depth(sum: &Accumulator) -> f32 {
     if sum.samples() == 0.0 {
         return Hit::NONE_T;

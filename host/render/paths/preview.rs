@@ -1,8 +1,9 @@
 //! [`Preview`]: a coarse image, for pixels that have no sample when the time is up.
 //!
-//! Where there is a time limit it is rendered first: a sample for each square of eight by eight pixels, or of more in large images, so that it
-//! takes a small part of a second. Where light paths are long that may be longer than the limit. Ever finer previews are therefore rendered, from
-//! a single pixel on, and the last that was done is kept.
+//! Where there is a time limit it is rendered first: a sample for each square of eight by eight
+//! pixels, or of more in large images, so that it takes a small part of a second. Where light paths
+//! are long that may be longer than the limit. Ever finer previews are therefore rendered, from a
+//! single pixel on, and the last that was done is kept.
 
 use std::time::{Duration, Instant};
 
@@ -31,9 +32,9 @@ pub(super) struct Preview {
 }
 
 impl Preview {
-    /// The finest preview of the image that `whole` covers, in no more than `max_pixels` pixels, that is done in its part of `limit`.
-    /// `pass` traces the pixels of one for as long as it is told to go on, and says whether that are all. The first is not cut: it is
-    /// one pixel.
+    /// The finest preview of the image that `whole` covers, in no more than `max_pixels` pixels,
+    /// that is done in its part of `limit`. `pass` traces the pixels of one for as long as it is
+    /// told to go on, and says whether that are all. The first is not cut: it is one pixel.
     ///
     /// # Errors
     ///
@@ -61,7 +62,8 @@ impl Preview {
         Ok(finest)
     }
 
-    /// Of the image that `whole` covers, in no more than `max_pixels` pixels; nothing is rendered yet.
+    /// Of the image that `whole` covers, in no more than `max_pixels` pixels; nothing is rendered
+    /// yet.
     ///
     /// # Errors
     ///

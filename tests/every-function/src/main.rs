@@ -2,7 +2,8 @@
 //! reports calls that panic, crash or take longer than they should: a second, unless the call is
 //! for more.
 //!
-//!     every-function [--seed N] [--seconds N] [--calls N] [--only PART] [--skip PART]… [--replay FUNCTION NUMBER]
+//!     every-function [--seed N] [--seconds N] [--calls N] [--only PART] [--skip PART]…
+//!                    [--replay FUNCTION NUMBER]
 //!
 //! Functions share the time evenly, so fast ones are called millions of times. The program ends
 //! when both the time is over and the calls are made. Each call has a number, and its arguments
