@@ -20,7 +20,8 @@ pub struct Settings {
     pub effects: EffectChoice,
     /// Stops after this time of tracing, give or take a launch on a GPU.
     pub time_limit: Option<Duration>,
-    /// Stops taking samples when [`Reached::noise`](super::paths::Reached::noise) is as low as this.
+    /// Stops taking samples when [`Reached::noise`](super::paths::Reached::noise) is as low as
+    /// this.
     pub noise: Option<f64>,
 }
 

@@ -153,8 +153,8 @@ impl Accumulator {
     /// of squares and products, Technometrics 4 (1962): without differences of large sums, which
     /// in 32-bit floats are all rounding if light is bright and steady.
     ///
-    /// A channel above [`Accumulator::BRIGHTEST`] counts as that, and a NaN as zero: one sample does
-    /// not destroy a pixel.
+    /// A channel above [`Accumulator::BRIGHTEST`] counts as that, and a NaN as zero: one sample
+    /// does not destroy a pixel.
     #[inline]
     pub fn add(&mut self, radiance: Vec3, alpha: f32, depth: f32) {
         let radiance = Vec3::new(

@@ -111,6 +111,11 @@ fn within(index: u32, length: u32) -> u32 {
 }
 
 /// The nearest hit, or with `ANY` any hit.
+#[expect(
+    clippy::too_many_lines,
+    reason = "its parts share a dozen variables, which compilers for GPUs carry through memory if they \
+              are in a struct"
+)]
 #[inline]
 fn walk<const ANY: bool, S: Spheres + ?Sized>(
     rung: u32,
