@@ -895,107 +895,117 @@ impl Odd for World {
 impl Odd for Scene {
     /// Mostly a scene that can be rendered, with few pixels and samples.
     fn odd(s: &mut Source) -> Self {
-        let mut scene = Self::new(Odd::odd(s));
-        (scene.width, scene.height) = (1 + s.below(12) as u32, 1 + s.below(12) as u32);
-        scene.sampling.samples = Some(1 + s.below(4) as u32);
-        scene.sampling.max_bounces = s.below(9) as u32;
-        let mut color = || Vec3::new(s.unit(), s.unit(), s.unit());
-        let (first, second, third) = (color(), color(), color());
-        scene.background = first;
-        if s.one_in(2) {
-            scene.view = Some(View {
-                eye: Vec3::new(0.0, 1.0, 8.0 * s.unit()),
-                target: Vec3::ZERO,
-                up: Vec3::Y,
-                vertical_fov: 40.0,
-            });
-        }
-        if s.one_in(3) {
-            scene.transparent = true;
-        }
-        if s.one_in(3) {
-            scene.lens = Lens {
-                aperture: s.unit(),
-                focus_distance: s.one_in(2).then_some(1.0),
-                shutter: (0.0, s.unit()),
-            };
-        }
-        if s.one_in(2) {
-            let sun = Sun {
-                direction: Vec3::Y,
-                size: s.unit(),
-                irradiance: third,
-            };
-            let image = s.one_in(2).then(|| EnvironmentImage {
-                width: 4,
-                height: 2,
-                texels: vec![second; 8],
-            });
-            scene.sky = Some(Surroundings {
-                horizon: first,
-                zenith: second,
-                sun: s.one_in(2).then_some(sun),
-                image,
-            });
-        }
-        if s.one_in(3) {
-            let mut fog = FogBall {
-                medium: spherule::kernel::fog::Fog::default(),
-            };
-            fog.medium.radius = s.unit() * 4.0;
-            fog.medium.albedo = second;
-            fog.medium.extinction = s.unit();
-            fog.medium.anisotropy = s.unit() - 0.5;
-            scene.fog = Some(fog);
-        }
-        if s.one_in(3) {
-            scene.lights = vec![PointLight {
-                position: Vec3::splat(3.0),
-                intensity: first * 20.0,
-            }];
-        }
-        if s.one_in(4) {
-            scene.sampling.ambient_occlusion = Some(s.unit() + 0.1);
-        }
-        // Then parts of it become odd.
-        let changes = if s.oddness == 0 { 0 } else { s.below(4) };
-        for _ in 0..changes {
-            match s.below(16) {
-                0 => scene.width = s.pick(&[0, 1, u32::MAX, 1 << 31, 1_000_000]),
-                1 => scene.height = s.pick(&[0, 1, u32::MAX, 1 << 31, 1_000_000]),
-                2 => scene.background = Odd::odd(s),
-                3 => scene.view = Odd::odd(s),
-                4 => scene.lens = Odd::odd(s),
-                5 => {
-                    scene.sky = Some(Surroundings {
-                        horizon: Odd::odd(s),
-                        zenith: Odd::odd(s),
-                        sun: Odd::odd(s),
-                        image: Odd::odd(s),
-                    });
-                }
-                6 => {
-                    scene.fog = Some(FogBall {
-                        medium: Odd::odd(s),
-                    });
-                }
-                7 => scene.lights = Odd::odd(s),
-                8 => scene.sampling = Odd::odd(s),
-                9 => {
-                    scene.develop = Develop {
-                        exposure: Odd::odd(s),
-                        tonemap: s.pick(&[Tonemap::Clamp, Tonemap::Reinhard, Tonemap::Aces]),
-                    };
-                }
-                10 => scene.world.velocities = Odd::odd(s),
-                11 => scene.world.material_ids = Odd::odd(s),
-                12 => scene.world.materials = Odd::odd(s),
-                13 => scene.world.material_names = Odd::odd(s),
-                14 => scene.world.spheres.push(Odd::odd(s)),
-                _ => scene.world.spheres.clear(),
-            }
-        }
+        let mut scene = small_scene(s);
+        make_parts_odd(&mut scene, s);
         scene
+    }
+}
+
+/// A scene that can be rendered, with few pixels and samples.
+fn small_scene(s: &mut Source) -> Scene {
+    let mut scene = Scene::new(Odd::odd(s));
+    (scene.width, scene.height) = (1 + s.below(12) as u32, 1 + s.below(12) as u32);
+    scene.sampling.samples = Some(1 + s.below(4) as u32);
+    scene.sampling.max_bounces = s.below(9) as u32;
+    let mut color = || Vec3::new(s.unit(), s.unit(), s.unit());
+    let (first, second, third) = (color(), color(), color());
+    scene.background = first;
+    if s.one_in(2) {
+        scene.view = Some(View {
+            eye: Vec3::new(0.0, 1.0, 8.0 * s.unit()),
+            target: Vec3::ZERO,
+            up: Vec3::Y,
+            vertical_fov: 40.0,
+        });
+    }
+    if s.one_in(3) {
+        scene.transparent = true;
+    }
+    if s.one_in(3) {
+        scene.lens = Lens {
+            aperture: s.unit(),
+            focus_distance: s.one_in(2).then_some(1.0),
+            shutter: (0.0, s.unit()),
+        };
+    }
+    if s.one_in(2) {
+        let sun = Sun {
+            direction: Vec3::Y,
+            size: s.unit(),
+            irradiance: third,
+        };
+        let image = s.one_in(2).then(|| EnvironmentImage {
+            width: 4,
+            height: 2,
+            texels: vec![second; 8],
+        });
+        scene.sky = Some(Surroundings {
+            horizon: first,
+            zenith: second,
+            sun: s.one_in(2).then_some(sun),
+            image,
+        });
+    }
+    if s.one_in(3) {
+        let mut fog = FogBall {
+            medium: spherule::kernel::fog::Fog::default(),
+        };
+        fog.medium.radius = s.unit() * 4.0;
+        fog.medium.albedo = second;
+        fog.medium.extinction = s.unit();
+        fog.medium.anisotropy = s.unit() - 0.5;
+        scene.fog = Some(fog);
+    }
+    if s.one_in(3) {
+        scene.lights = vec![PointLight {
+            position: Vec3::splat(3.0),
+            intensity: first * 20.0,
+        }];
+    }
+    if s.one_in(4) {
+        scene.sampling.ambient_occlusion = Some(s.unit() + 0.1);
+    }
+    scene
+}
+
+/// Gives none, one or several parts of a scene odd values.
+fn make_parts_odd(scene: &mut Scene, s: &mut Source) {
+    let changes = if s.oddness == 0 { 0 } else { s.below(4) };
+    for _ in 0..changes {
+        match s.below(16) {
+            0 => scene.width = s.pick(&[0, 1, u32::MAX, 1 << 31, 1_000_000]),
+            1 => scene.height = s.pick(&[0, 1, u32::MAX, 1 << 31, 1_000_000]),
+            2 => scene.background = Odd::odd(s),
+            3 => scene.view = Odd::odd(s),
+            4 => scene.lens = Odd::odd(s),
+            5 => {
+                scene.sky = Some(Surroundings {
+                    horizon: Odd::odd(s),
+                    zenith: Odd::odd(s),
+                    sun: Odd::odd(s),
+                    image: Odd::odd(s),
+                });
+            }
+            6 => {
+                scene.fog = Some(FogBall {
+                    medium: Odd::odd(s),
+                });
+            }
+            7 => scene.lights = Odd::odd(s),
+            8 => scene.sampling = Odd::odd(s),
+            9 => {
+                scene.develop = Develop {
+                    exposure: Odd::odd(s),
+                    tonemap: s.pick(&[Tonemap::Clamp, Tonemap::Reinhard, Tonemap::Aces]),
+                };
+            }
+            10 => scene.world.velocities = Odd::odd(s),
+            11 => scene.world.material_ids = Odd::odd(s),
+            12 => scene.world.materials = Odd::odd(s),
+            13 => scene.world.material_names = Odd::odd(s),
+            14 => scene.world.spheres.push(Odd::odd(s)),
+            _ => scene.world.spheres.clear(),
+        }
     }
 }
 
