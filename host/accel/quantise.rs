@@ -34,7 +34,8 @@ pub(super) fn put_sides(boxes: &[(Vec3, Vec3); Node::WIDTH], node: &mut Node) {
             // Positive floats are in the order of their bits.
             let low = first.0[axis].to_bits() >> 16;
             let high = first.1[axis].to_bits().div_ceil(1 << 16);
-            // The upper box's side is the whole word: at most its low side, at least its high side.
+            // The whole word is the upper box's side: rounded down for a low side, up for a high
+            // side.
             let low = (last.0[axis].to_bits().saturating_sub(low) >> 16) << 16 | low;
             let high = (last.1[axis].to_bits().saturating_sub(high)).div_ceil(1 << 16) << 16 | high;
             node.sides[axis][word] = low;

@@ -9,19 +9,19 @@ use crate::device::Device;
 use crate::error::Result;
 use crate::scene::Scene;
 
-/// The pixels of the smallest image. Where light paths are as long as they may be, even these few
-/// take a part of a second.
+/// The pixels of the smallest image. With the longest light paths, even these take a fraction of a
+/// second.
 const LEAST: f64 = 64.0;
-/// The pixels of an image that has fewer samples instead of fewer pixels.
+/// The pixels that an image keeps while its samples are reduced.
 const FAIR: f64 = 8192.0;
-/// The fewest samples of an image that has several: one alone is no antialiasing.
+/// The fewest samples of an image that has several: with one there is no antialiasing.
 const FEWEST: u32 = 2;
-/// How many more samples of all pixels there are from one frame to the next, at most: small images
-/// tell little of what large ones take.
+/// The most by which the samples of all pixels grow from one frame to the next: small images
+/// predict large ones poorly.
 const MOST_GROWTH: f64 = 16.0;
-/// By how much they must become more for another frame to be worth its time.
+/// The least growth that makes another frame worthwhile.
 const LEAST_GROWTH: f64 = 1.2;
-/// The part of the time there is that one frame may take to be found too large.
+/// The share of the remaining time after which a frame is given up as too large.
 const SHARE: f64 = 0.5;
 
 /// Makes the image of `scene` smaller, and its samples fewer, where a frame would take longer than
@@ -52,7 +52,7 @@ pub fn fit(
     };
     let most = all * f64::from(samples);
     let mut work = all.min(LEAST) * f64::from(fewest);
-    // What was done in time, or is the least.
+    // The most work that was done in time, or else the least work.
     let mut fits = work;
     while work < most {
         set(scene, work);
@@ -73,13 +73,13 @@ pub fn fit(
     Ok(())
 }
 
-/// The size of an image of about so many pixels: of the shape of one of `whole`, as far as no side
-/// is shorter than a pixel.
+/// The size of an image of about so many pixels, with the aspect ratio of `whole` unless a side
+/// would be shorter than a pixel.
 fn size(whole: (u32, u32), pixels: f64) -> (u32, u32) {
     let (width, height) = (f64::from(whole.0), f64::from(whole.1));
     let share = (pixels / (width * height)).sqrt().min(1.0);
     let shorter = width.min(height) * share;
-    // What the shorter side has too much, the longer has less.
+    // If the shorter side is rounded up to a pixel, the longer one shrinks.
     let longer = if shorter < 1.0 {
         pixels
     } else {

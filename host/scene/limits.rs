@@ -118,7 +118,7 @@ pub const STRENGTH: Range = Range::new(0.0, 1e12);
 pub const ROUGHNESS: Range = Range::new(0.0, 1.0);
 /// The refractive index of glass over that of what surrounds it.
 pub const INDEX: Range = Range::new(0.1, 10.0);
-/// The refractive index of plastic's coat.
+/// The refractive index of plastic's coat. Schlick's curve is far from Fresnel's equations below.
 pub const COAT_INDEX: Range = Range::new(1.1, 4.0);
 /// A channel of what glass absorbs, per scene unit.
 pub const ABSORPTION: Range = Range::new(0.0, 1e18);

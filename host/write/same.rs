@@ -1,4 +1,4 @@
-//! Which names are the same file: by another spelling, a symlink or a hard link.
+//! Whether two names are the same file: by another spelling, a symlink or a hard link.
 
 use std::path::{Path, PathBuf};
 

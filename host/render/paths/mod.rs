@@ -1,4 +1,4 @@
-//! Light paths: scenes that call for more than one ray a pixel shows.
+//! Light paths: scenes that need more than one ray a pixel.
 //!
 //! | module | holds |
 //! | --- | --- |
@@ -58,7 +58,7 @@ pub fn render(
     memory_for(scene, (size_of::<Accumulator>() + size_of::<f32>()) as u64)?;
     let prepared = Prepared::new(scene, settings.effects, settings.acceleration)?;
     let setup = started.elapsed();
-    // Had before the work, which is not to be done in vain.
+    // Reserved first, so that no work is lost if memory runs out.
     let room_for_alpha = || memory::room(pixels, "the image's alpha channel");
     let is_transparent = prepared.shown.any(Effects::TRANSPARENT_BACKGROUND);
     let mut alpha: Vec<f32> = if is_transparent {
@@ -121,7 +121,7 @@ pub fn render(
     })
 }
 
-/// The pixels of these sums, in their memory.
+/// Turns the sums into pixels, in place.
 fn into_pixels(sums: Vec<Accumulator>) -> Vec<Pixel> {
     const SUMS_SIZE: usize = size_of::<Accumulator>() / size_of::<Pixel>();
     let count = sums.len();

@@ -19,8 +19,8 @@ macro_rules! layouts {
         /// The number of entries.
         pub const COUNT: usize = [$($value),*].len();
 
-        /// Writes the table, in bytes, as the compiler of this code sees it. A slice that is too
-        /// short is filled as far as it goes.
+        /// Writes the table of sizes and offsets, which are in bytes, as the compiler of this code
+        /// sees it. A slice that is too short is filled as far as it goes.
         #[inline]
         pub fn write(table: &mut [u32]) {
             let mut index = 0;
