@@ -44,8 +44,8 @@ pub(crate) fn room<T>(count: u64, purpose: &str) -> Result<Vec<T>> {
     Ok(elements)
 }
 
-/// Allocates and frees this many bytes, so that a following allocation that cannot fail will
-/// succeed.
+/// Allocates and frees this many bytes, so that a later allocation that has no way to
+/// report failure will succeed.
 ///
 /// # Errors
 ///

@@ -219,7 +219,7 @@ mod tests {
         }
     }
 
-    /// A frame that takes longer than others of its size promised is not what is measured then.
+    /// If a frame is cut short because smaller ones promised less time, the size before is used.
     #[test]
     fn a_frame_that_is_broken_off_is_made_smaller_again() {
         let mut scene = Scene::new(World::default());

@@ -137,8 +137,8 @@ fn into_pixels(sums: Vec<Accumulator>) -> Vec<Pixel> {
     pixels
 }
 
-/// A depth of exactly zero is a pixel that no kernel wrote; none was traced for a pixel without
-/// samples.
+/// Zero marks a pixel that no kernel wrote, so that real depths stay above it. A pixel without
+/// samples has no hit.
 fn depth(sum: &Accumulator) -> f32 {
     if sum.samples() == 0.0 {
         return Hit::NONE_T;
