@@ -166,12 +166,10 @@ fn a_spherical_light_gives_its_closed_form() {
             if name == "chance" && is_small {
                 continue;
             }
-            let settings = Settings {
-                effects,
+            let settings = Settings::default()
+                .effects(effects)
                 // The lower rungs lose the floor's curvature.
-                rung: Rung::Double,
-                ..Settings::default()
-            };
+                .rung(Rung::Double);
             let (mean, error) = mean(&image(&scene, settings, &Device::Cpu));
             // Continued paths leave the floor from a little above it, which brings the lamp nearer:
             // by 36 u (|C| + r), see `Surface::leave`.
@@ -488,10 +486,7 @@ fn the_error_falls_with_the_samples() {
 fn effects_that_are_not_called_for_change_nothing() {
     for name in GALLERY {
         let scene = gallery(name, 40, 24, 4);
-        let with = |effects| Settings {
-            effects,
-            ..Settings::default()
-        };
+        let with = |effects| Settings::default().effects(effects);
         let own = image(&scene, with(EffectChoice::Auto), &Device::Cpu);
         let all = image(&scene, with(EffectChoice::All), &Device::Cpu);
         assert!(own.pixels() == all.pixels(), "{name}");
@@ -510,10 +505,7 @@ fn effects_that_are_not_called_for_change_nothing() {
 fn a_plain_scene_stays_plain() {
     let mut scene = Scene::load("scenes/two-spheres.toml").expect("a scene");
     (scene.width, scene.height) = (40, 24);
-    let all = Settings {
-        effects: EffectChoice::All,
-        ..Settings::default()
-    };
+    let all = Settings::default().effects(EffectChoice::All);
     let own = on_cpu(&scene);
     assert!(own.pixels() == image(&scene, all, &Device::Cpu).pixels());
     assert!(
@@ -533,10 +525,8 @@ fn images_without_some_effects_are_finite() {
     for name in GALLERY {
         let scene = gallery(name, 32, 20, 4);
         for (effect, _) in Effects::NAMED {
-            let settings = Settings {
-                effects: EffectChoice::Only(scene.effects().without(*effect)),
-                ..Settings::default()
-            };
+            let settings =
+                Settings::default().effects(EffectChoice::Only(scene.effects().without(*effect)));
             let image = image(&scene, settings, &Device::Cpu);
             assert!(
                 image.pixels().iter().all(|pixel| pixel.color().is_finite()),
@@ -596,10 +586,7 @@ fn gpus_render_what_the_cpu_renders() {
         for adapter in all_adapters() {
             let device = device(adapter);
             for effects in [EffectChoice::Auto, EffectChoice::All] {
-                let settings = Settings {
-                    effects,
-                    ..Settings::default()
-                };
+                let settings = Settings::default().effects(effects);
                 let compared = Comparison::of(&image(&scene, settings, &device), &cpu, tolerance);
                 assert!(
                     compared.expect("comparable").is_within(),
@@ -660,10 +647,7 @@ fn small_images_have_all_of_their_samples() {
 #[test]
 fn a_noise_target_ends_a_render() {
     let scene = gallery("soft-light", 48, 32, MAX_SAMPLES);
-    let settings = Settings {
-        noise: Some(0.02),
-        ..Settings::default()
-    };
+    let settings = Settings::default().noise(0.02);
     let rendered = render(&scene, settings, &Device::Cpu, QUIET).expect("the scene renders");
     let reached = rendered.reached.expect("samples were taken");
     assert_eq!(reached.stopped_by, StoppedBy::Noise);
@@ -676,10 +660,7 @@ fn a_noise_target_ends_a_render() {
 #[test]
 fn a_time_limit_ends_a_render() {
     let scene = gallery("soft-light", 48, 32, MAX_SAMPLES);
-    let settings = Settings {
-        time_limit: Some(std::time::Duration::from_millis(50)),
-        ..Settings::default()
-    };
+    let settings = Settings::default().time_limit(std::time::Duration::from_millis(50));
     let rendered = render(&scene, settings, &Device::Cpu, QUIET).expect("the scene renders");
     assert_eq!(
         rendered.reached.map(|reached| reached.stopped_by),

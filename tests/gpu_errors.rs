@@ -34,10 +34,7 @@ fn trace_rays(gpu: &Gpu) -> Kernel {
 }
 
 fn with_timeout(adapter: &wgpu::Adapter, timeout: Duration) -> Gpu {
-    let options = GpuOptions {
-        timeout,
-        ..GpuOptions::default()
-    };
+    let options = GpuOptions::default().timeout(timeout);
     open(adapter, options)
 }
 
@@ -88,10 +85,7 @@ fn device_refused() {
         max_compute_invocations_per_workgroup: u32::MAX,
         ..wgpu::Limits::default()
     };
-    let options = GpuOptions {
-        limits: Some(limits),
-        ..GpuOptions::default()
-    };
+    let options = GpuOptions::default().limits(limits);
     for adapter in all_adapters() {
         let error =
             Gpu::from_adapter(adapter, options.clone()).expect_err("the limits are too high");
@@ -617,10 +611,7 @@ fn launches_outside_the_image_are_refused() {
     (scene.width, scene.height) = (16, 9);
     let effects = spherule::render::EffectChoice::Auto;
     let plain = paths::Prepared::new(&scene, effects, Acceleration::Auto).expect("a scene");
-    let settings = Settings {
-        time_limit: Some(Duration::from_secs(1)),
-        ..Settings::default()
-    };
+    let settings = Settings::default().time_limit(Duration::from_secs(1));
     let (size, none) = (plain.launch.image_size, glam::UVec2::ZERO);
     for (image, tile, origin) in [
         (size, none, none),

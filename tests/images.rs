@@ -267,10 +267,7 @@ fn splitting_changes_nothing() {
         let narrow = open_with_limits(adapter, limits);
         let launch = launch_of(&scene);
         for acceleration in [Acceleration::Tree, Acceleration::BruteForce] {
-            let settings = Settings {
-                acceleration,
-                ..Settings::from(Shading::Lit)
-            };
+            let settings = Settings::from(Shading::Lit).acceleration(acceleration);
             let prepare = |gpu| {
                 render::gpu::Prepared::new(gpu, &scene.world, settings).expect("a world on the GPU")
             };

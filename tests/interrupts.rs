@@ -37,10 +37,7 @@ fn lit() -> Settings {
 }
 
 fn lit_within(time_limit: Duration) -> Settings {
-    Settings {
-        time_limit: Some(time_limit),
-        ..lit()
-    }
+    lit().time_limit(time_limit)
 }
 
 /// The CPU, and every adapter.
@@ -136,11 +133,9 @@ fn interrupted_camera_rays_keep_the_pixels_that_are_done() {
         let scene = scene("two-spheres.toml", 1024, 8192);
         // Measurements would be transparent where nothing is hit, too.
         for shading in [Shading::Lit, Shading::Flat] {
-            let settings = Settings {
-                effects: EffectChoice::Auto,
-                acceleration: Acceleration::Auto,
-                ..Settings::from((shading, Rung::Robust))
-            };
+            let settings = Settings::from((shading, Rung::Robust))
+                .effects(EffectChoice::Auto)
+                .acceleration(Acceleration::Auto);
             let whole = render(&scene, settings, &device, QUIET).expect("an image");
             assert!(whole.is_complete());
             assert!(!whole.image.has_alpha());

@@ -152,10 +152,7 @@ fn packets_find_what_single_rays_find() {
         for rung in Rung::ALL {
             for acceleration in [Acceleration::Tree, Acceleration::BruteForce] {
                 let world = cpu::Prepared::new(&scene.world, acceleration);
-                let settings = Settings {
-                    acceleration,
-                    ..Settings::from((Shading::Flat, rung))
-                };
+                let settings = Settings::from((Shading::Flat, rung)).acceleration(acceleration);
                 let pixels = cpu::render(&launch, &world, settings, QUIET).expect("an image");
                 let mut hits = 0;
                 for (index, pixel) in pixels.iter().enumerate() {
@@ -193,10 +190,8 @@ fn tiles_find_what_the_cpu_finds() {
             let mut launch = whole_image(&scene).expect("a launch");
             launch.camera.up += skew * launch.camera.right;
             for rung in [Rung::Robust, Rung::Certified] {
-                let settings = Settings {
-                    acceleration: Acceleration::BruteForce,
-                    ..Settings::from((Shading::Flat, rung))
-                };
+                let settings =
+                    Settings::from((Shading::Flat, rung)).acceleration(Acceleration::BruteForce);
                 let world = spherule::render::gpu::Prepared::new(gpu, &scene.world, settings)
                     .expect("a world");
                 let (on_gpu, _) =
@@ -248,10 +243,8 @@ fn tiles_take_the_first_of_equals() {
     if skips("tiles_take_the_first_of_equals") {
         return;
     }
-    let settings = Settings {
-        acceleration: Acceleration::BruteForce,
-        ..Settings::from((Shading::Lit, Rung::Robust))
-    };
+    let settings =
+        Settings::from((Shading::Lit, Rung::Robust)).acceleration(Acceleration::BruteForce);
     for (are_next, width, height) in [
         (false, 150, 100),
         (true, 150, 100),

@@ -9,6 +9,7 @@ use crate::shown::shown;
 
 /// The properties of an adapter.
 #[derive(Clone, Debug, Serialize)]
+#[non_exhaustive]
 pub struct AdapterReport {
     /// The adapter's name, as its driver gives it.
     pub name: String,

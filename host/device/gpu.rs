@@ -35,6 +35,7 @@ use crate::shown::shown;
 
 /// How a device is opened; for tests and unusual drivers.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct GpuOptions {
     /// The limits to request; `None` requests all that the adapter has.
     pub limits: Option<wgpu::Limits>,
@@ -51,6 +52,32 @@ impl Default for GpuOptions {
             through_naga: false,
             timeout: Duration::from_secs(120),
         }
+    }
+}
+
+impl GpuOptions {
+    /// Requests these limits.
+    #[must_use]
+    pub fn limits(self, limits: wgpu::Limits) -> Self {
+        Self {
+            limits: Some(limits),
+            ..self
+        }
+    }
+
+    /// Passes kernels through naga, or not.
+    #[must_use]
+    pub fn through_naga(self, through_naga: bool) -> Self {
+        Self {
+            through_naga,
+            ..self
+        }
+    }
+
+    /// Counts a launch as hung after this time.
+    #[must_use]
+    pub fn timeout(self, timeout: Duration) -> Self {
+        Self { timeout, ..self }
     }
 }
 

@@ -8,7 +8,16 @@ use spherule_kernel::{Effects, Rung, Shading};
 use crate::accel::Acceleration;
 
 /// What is fixed before the kernel is compiled, on the GPU and on the CPU.
+///
+/// ```
+/// use spherule::kernel::{Rung, Shading};
+/// use spherule::render::Settings;
+///
+/// let settings = Settings::default().shading(Shading::Depth).rung(Rung::Double);
+/// assert_eq!(settings.rung, Rung::Double);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Settings {
     /// What the image shows of a hit.
     pub shading: Shading,
@@ -23,6 +32,53 @@ pub struct Settings {
     /// Stops taking samples when [`Reached::noise`](super::paths::Reached::noise) is as low as
     /// this.
     pub noise: Option<f64>,
+}
+
+impl Settings {
+    /// With this mode of shading.
+    #[must_use]
+    pub fn shading(self, shading: Shading) -> Self {
+        Self { shading, ..self }
+    }
+
+    /// With this rung.
+    #[must_use]
+    pub fn rung(self, rung: Rung) -> Self {
+        Self { rung, ..self }
+    }
+
+    /// With or without a tree.
+    #[must_use]
+    pub fn acceleration(self, acceleration: Acceleration) -> Self {
+        Self {
+            acceleration,
+            ..self
+        }
+    }
+
+    /// With these effects in the pipeline.
+    #[must_use]
+    pub fn effects(self, effects: EffectChoice) -> Self {
+        Self { effects, ..self }
+    }
+
+    /// With this limit on the time of tracing.
+    #[must_use]
+    pub fn time_limit(self, limit: Duration) -> Self {
+        Self {
+            time_limit: Some(limit),
+            ..self
+        }
+    }
+
+    /// With this target for the noise.
+    #[must_use]
+    pub fn noise(self, target: f64) -> Self {
+        Self {
+            noise: Some(target),
+            ..self
+        }
+    }
 }
 
 impl From<Shading> for Settings {

@@ -26,6 +26,7 @@ pub use world::World;
 
 /// A world, a view of it, and the image to render.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Scene {
     /// The spheres and their materials.
     pub world: World,

@@ -47,19 +47,13 @@ pub fn device(adapter: &wgpu::Adapter) -> Device {
 }
 
 pub fn open_with_limits(adapter: &wgpu::Adapter, limits: wgpu::Limits) -> Gpu {
-    let options = GpuOptions {
-        limits: Some(limits),
-        ..GpuOptions::default()
-    };
+    let options = GpuOptions::default().limits(limits);
     open(adapter, options)
 }
 
 /// The adapter, opened so that modules go through naga.
 pub fn open_through_naga(adapter: &wgpu::Adapter) -> Gpu {
-    let options = GpuOptions {
-        through_naga: true,
-        ..GpuOptions::default()
-    };
+    let options = GpuOptions::default().through_naga(true);
     open(adapter, options)
 }
 

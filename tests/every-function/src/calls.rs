@@ -5,6 +5,10 @@
     clippy::unit_arg,
     reason = "a call is one expression"
 )]
+#![expect(
+    clippy::too_many_lines,
+    reason = "an enum has as many variants as it has"
+)]
 
 use crate::odd::{self, Odd, Source};
 use crate::{Call, seen};
@@ -622,6 +626,18 @@ pub const CALLS: &[Call] = &[
     Call::new("spherule::device::gpu::GpuOptions as Default", |_| {
         seen(<spherule::device::gpu::GpuOptions as Default>::default())
     }),
+    Call::new("spherule::device::gpu::GpuOptions::through_naga", |s| {
+        seen(spherule::device::gpu::GpuOptions::through_naga(
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule::device::gpu::GpuOptions::timeout", |s| {
+        seen(spherule::device::gpu::GpuOptions::timeout(
+            s.draw(),
+            s.draw(),
+        ))
+    }),
     Call::new("spherule::device::kernel::Kernel::workgroup_size", |s| {
         seen(spherule::device::kernel::Kernel::workgroup_size(s.kernel()))
     })
@@ -1013,6 +1029,24 @@ pub const CALLS: &[Call] = &[
             spherule_kernel::shading::Shading,
             spherule_kernel::precision::Rung,
         )>>::from(s.draw()))
+    }),
+    Call::new("spherule::render::settings::Settings::acceleration", |s| {
+        seen(spherule::render::Settings::acceleration(s.draw(), s.draw()))
+    }),
+    Call::new("spherule::render::settings::Settings::effects", |s| {
+        seen(spherule::render::Settings::effects(s.draw(), s.draw()))
+    }),
+    Call::new("spherule::render::settings::Settings::noise", |s| {
+        seen(spherule::render::Settings::noise(s.draw(), s.draw()))
+    }),
+    Call::new("spherule::render::settings::Settings::rung", |s| {
+        seen(spherule::render::Settings::rung(s.draw(), s.draw()))
+    }),
+    Call::new("spherule::render::settings::Settings::shading", |s| {
+        seen(spherule::render::Settings::shading(s.draw(), s.draw()))
+    }),
+    Call::new("spherule::render::settings::Settings::time_limit", |s| {
+        seen(spherule::render::Settings::time_limit(s.draw(), s.draw()))
     }),
     Call::new("spherule::scene::Scene::aspect", |s| {
         seen(spherule::scene::Scene::aspect(&s.draw()))
@@ -2953,19 +2987,6 @@ impl Odd for spherule::render::Rendered {
             rays: Odd::odd(s),
             timings: Odd::odd(s),
             reached: Odd::odd(s),
-        }
-    }
-}
-
-impl Odd for spherule::render::Settings {
-    fn odd(s: &mut Source) -> Self {
-        spherule::render::Settings {
-            shading: Odd::odd(s),
-            rung: Odd::odd(s),
-            acceleration: Odd::odd(s),
-            effects: Odd::odd(s),
-            time_limit: Odd::odd(s),
-            noise: Odd::odd(s),
         }
     }
 }

@@ -17,7 +17,7 @@ use spherule::accuracy::report::{Family, Row};
 use spherule::accuracy::scene_cases::{SCENE_CASES, SceneCase};
 use spherule::bench::measure::Plan;
 use spherule::bench::scenes::BenchScene;
-use spherule::device::{Access, Buffer, Kernel, Module};
+use spherule::device::{Access, Buffer, GpuOptions, Kernel, Module};
 use spherule::kernel::accel::brute::MovingSpheres;
 use spherule::kernel::accel::node;
 use spherule::kernel::accel::node::Node;
@@ -35,7 +35,7 @@ use spherule::kernel::{
 use spherule::random::Random;
 use spherule::read::particles::elements::{Element, UNKNOWN, by_number};
 use spherule::read::particles::{FORMATS, Format};
-use spherule::render::EffectChoice;
+use spherule::render::{EffectChoice, Settings};
 use spherule::render::pace::Pace;
 use spherule::render::{cpu, gpu, paths};
 use spherule::scene::surroundings::{Develop, EnvironmentImage, Lens, Sun, Surroundings, Tonemap};
@@ -888,6 +888,28 @@ impl Odd for World {
             materials,
             material_names,
             velocities,
+        }
+    }
+}
+
+impl Odd for GpuOptions {
+    fn odd(s: &mut Source) -> Self {
+        Self::default()
+            .through_naga(Odd::odd(s))
+            .timeout(Odd::odd(s))
+    }
+}
+
+impl Odd for Settings {
+    fn odd(s: &mut Source) -> Self {
+        let (shading, rung): (Shading, Rung) = (Odd::odd(s), Odd::odd(s));
+        let settings = Self::from((shading, rung))
+            .acceleration(Odd::odd(s))
+            .effects(Odd::odd(s));
+        match s.below(3) {
+            0 => settings.time_limit(Odd::odd(s)),
+            1 => settings.noise(Odd::odd(s)),
+            _ => settings,
         }
     }
 }

@@ -55,6 +55,10 @@ const LEFT_OUT: &[(&str, &str)] = &[
         "takes a mask: host/lanes.rs",
     ),
     (
+        "spherule::device::gpu::GpuOptions::limits",
+        "takes a type of wgpu: tests/gpu_errors.rs",
+    ),
+    (
         "spherule_kernel::precision::Rung::with",
         "takes code: host/trace/search.rs",
     ),
@@ -208,7 +212,9 @@ const BY_HAND: &[&str] = &[
     "spherule::render::pace::Pace",
     "spherule::render::paths::prepare::Prepared",
     "spherule::scene::Scene",
+    "spherule::device::gpu::GpuOptions",
     "spherule::read::particles::Format",
+    "spherule::render::settings::Settings",
     "spherule::accel::tree::Nodes",
     "spherule::accel::tree::BuiltTree",
     "spherule::scene::world::World",
