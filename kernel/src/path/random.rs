@@ -41,35 +41,35 @@ impl VertexNumbers {
     #[inline]
     #[must_use]
     pub fn towards_light(&self) -> Vec2 {
-        self.sampler.pair(self.first + 1)
+        self.sampler.pair(self.first.wrapping_add(1))
     }
 
     /// For the choice of a light.
     #[inline]
     #[must_use]
     pub fn which_light(&self) -> f32 {
-        self.sampler.single(self.first + 2)
+        self.sampler.single(self.first.wrapping_add(2))
     }
 
     /// For the choice between two lobes.
     #[inline]
     #[must_use]
     pub fn choice(&self) -> f32 {
-        self.sampler.single(self.first + 3)
+        self.sampler.single(self.first.wrapping_add(3))
     }
 
     /// For the distance to the next scattering in fog.
     #[inline]
     #[must_use]
     pub fn way(&self) -> f32 {
-        self.sampler.single(self.first + 4)
+        self.sampler.single(self.first.wrapping_add(4))
     }
 
     /// For Russian roulette.
     #[inline]
     #[must_use]
     pub fn roulette(&self) -> f32 {
-        self.sampler.single(self.first + 6)
+        self.sampler.single(self.first.wrapping_add(6))
     }
 }
 

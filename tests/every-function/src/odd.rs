@@ -35,8 +35,8 @@ use spherule::kernel::{
 use spherule::random::Random;
 use spherule::read::particles::elements::{Element, UNKNOWN, by_number};
 use spherule::read::particles::{FORMATS, Format};
-use spherule::render::{EffectChoice, Settings};
 use spherule::render::pace::Pace;
+use spherule::render::{EffectChoice, Settings};
 use spherule::render::{cpu, gpu, paths};
 use spherule::scene::surroundings::{Develop, EnvironmentImage, Lens, Sun, Surroundings, Tonemap};
 use spherule::scene::{FogBall, PointLight, Sampling, View, World};
