@@ -18,7 +18,7 @@ pub(super) enum Identity {
 #[cfg(unix)]
 type Id = (u64, u64);
 #[cfg(not(unix))]
-type Id = PathBuf;
+type Id = std::path::PathBuf;
 
 impl Identity {
     /// The identity of a path; `None` for what any number of outputs and inputs may share, such as
