@@ -32,7 +32,7 @@ use crate::write::same::{refuse_clashes, refuse_inputs};
 
 /// Everything that was measured, as the JSON output has it.
 #[derive(Debug, Serialize)]
-pub(super) struct Report {
+pub(super) struct AccuracyReport {
     device: String,
     /// The requested number; each family has its own count.
     rays_a_family: u32,
@@ -114,7 +114,7 @@ impl Outputs {
             .collect()
     }
 
-    fn write(&self, report: &Report) -> Result<()> {
+    fn write(&self, report: &AccuracyReport) -> Result<()> {
         if let Some(output) = &self.html {
             output.write(page(report).as_bytes())?;
             note(&format!("wrote {}", shown_path(output.path())));
@@ -164,7 +164,7 @@ pub(super) fn run(arguments: &AccuracyArguments) -> Result<ExitCode> {
     if found.is_cut {
         note("time ran out before all samples were measured; give a longer --time-limit");
     }
-    outputs.write(&Report {
+    outputs.write(&AccuracyReport {
         device: device.name(),
         rays_a_family: arguments.rays,
         seed: SEED,
@@ -201,7 +201,7 @@ fn scene(arguments: &AccuracyArguments, outputs: &Outputs) -> Result<Option<Scen
     Ok(Some(scene))
 }
 
-/// What was measured, as [`Report`] has it.
+/// What was measured, as [`AccuracyReport`] has it.
 #[derive(Default)]
 struct Found {
     families: Vec<FamilyReport>,
@@ -376,7 +376,7 @@ fn fit_samples(
     Ok(compiling)
 }
 
-fn steps_table(report: &Report) -> String {
+fn steps_table(report: &AccuracyReport) -> String {
     let [width, height] = report.samples_image.unwrap_or_default();
     let mut text = format!(
         "{}, {width} × {height} pixels, against {} of another seed\n\n{:12} {:>8} {:>14} {:>10} {:>10} {:>10} {:>12}\n",
@@ -420,7 +420,7 @@ fn steps_table(report: &Report) -> String {
     text
 }
 
-fn table(report: &Report) -> String {
+fn table(report: &AccuracyReport) -> String {
     if !report.samples.is_empty() {
         return steps_table(report);
     }
@@ -534,7 +534,7 @@ fn digits(nanoseconds: f64) -> String {
     }
 }
 
-fn page(report: &Report) -> String {
+fn page(report: &AccuracyReport) -> String {
     let families: Vec<report::Family<'_>> = report
         .families
         .iter()

@@ -26,7 +26,7 @@ use spherule_kernel::Rung;
 
 /// The JSON output.
 #[derive(Serialize)]
-struct Report<'a> {
+struct BenchReport<'a> {
     device: String,
     #[serde(skip_serializing_if = "Option::is_none")]
     limit: Option<Limit>,
@@ -172,7 +172,7 @@ fn measure_all(
         all.push(measured);
     }
     if let Some(output) = json {
-        let report = Report {
+        let report = BenchReport {
             device: device.name(),
             limit,
             scenes: &all,

@@ -17,7 +17,7 @@ use crate::ulp;
 use crate::write::Output;
 
 #[derive(Debug, Serialize)]
-struct Report {
+struct CheckReport {
     device: String,
     why: String,
     canary: Canary,
@@ -50,7 +50,7 @@ pub(super) fn run(arguments: &CheckArguments) -> Result<ExitCode> {
     })
 }
 
-fn report(device: &Device, why: String) -> Result<Report> {
+fn report(device: &Device, why: String) -> Result<CheckReport> {
     let canary = Canary::on(device)?;
     let objections = Rung::ALL.map(|rung| (rung, canary.objection(rung)));
     let mut cases = Vec::new();
@@ -78,7 +78,7 @@ fn report(device: &Device, why: String) -> Result<Report> {
         judge(case.number, case.name, &|rung| case.judge(device, rung))?;
     }
     cases.sort_by_key(|case| case.number);
-    Ok(Report {
+    Ok(CheckReport {
         device: device.name(),
         why,
         canary,
@@ -91,7 +91,7 @@ fn report(device: &Device, why: String) -> Result<Report> {
     })
 }
 
-fn table(report: &Report) -> String {
+fn table(report: &CheckReport) -> String {
     let mut text = String::new();
     let share = |share: Share| format!("{:>6} of {}", share.exact, share.tried);
     let canary = &report.canary;

@@ -28,7 +28,7 @@ use crate::write::Output;
 use crate::write::same::refuse_inputs;
 
 #[derive(Debug, Serialize)]
-struct Report {
+struct ExplainReport {
     scene: String,
     spheres: usize,
     /// Size of the image that was measured.
@@ -107,7 +107,7 @@ fn report(
     device: &Device,
     why: &str,
     until: Option<Instant>,
-) -> Result<Report> {
+) -> Result<ExplainReport> {
     let chosen = choose_rung(arguments.precision, &scene, DEFAULT_TOLERANCE, device);
     if let Some(warning) = &chosen.warning {
         note(warning);
@@ -145,7 +145,7 @@ fn report(
             }
         })
         .collect();
-    Ok(Report {
+    Ok(ExplainReport {
         scene: shown_path(&arguments.input),
         spheres: scene.world.spheres.len(),
         width: scene.width,
@@ -206,7 +206,7 @@ fn costs(
 /// The text for what was not measured.
 const NOT_MEASURED: &str = "no time left to measure it";
 
-fn table(report: &Report) -> String {
+fn table(report: &ExplainReport) -> String {
     let mut text = String::new();
     // Writing to a String cannot fail.
     let _ = add_scene(&mut text, report);
@@ -219,7 +219,7 @@ fn table(report: &Report) -> String {
 }
 
 /// What is rendered, on what, and how much of it was measured.
-fn add_scene(text: &mut String, report: &Report) -> fmt::Result {
+fn add_scene(text: &mut String, report: &ExplainReport) -> fmt::Result {
     let [width, height] = report.whole_image;
     writeln!(
         text,
@@ -280,7 +280,7 @@ fn add_frame(text: &mut String, frame: &Frame, module_bytes: usize) -> fmt::Resu
 }
 
 /// The effects that the scene calls for, each with its cost and with what calls for it.
-fn add_called(text: &mut String, report: &Report) -> fmt::Result {
+fn add_called(text: &mut String, report: &ExplainReport) -> fmt::Result {
     let called: Vec<&Effect> = report.effects.iter().filter(|e| e.by.is_some()).collect();
     if called.is_empty() {
         text.push_str("\nThe scene calls for no effect: one ray a pixel renders it.\n");
@@ -313,7 +313,7 @@ fn add_called(text: &mut String, report: &Report) -> fmt::Result {
 }
 
 /// The names of the effects that nothing calls for.
-fn add_idle(text: &mut String, report: &Report) -> fmt::Result {
+fn add_idle(text: &mut String, report: &ExplainReport) -> fmt::Result {
     writeln!(text, "\nNot called for, and not in the pipeline:")?;
     let mut line = String::from(" ");
     for effect in report.effects.iter().filter(|e| e.by.is_none()) {

@@ -21,7 +21,7 @@ pub(super) fn print(error: &Error) {
 }
 
 fn rendered(error: &Error, theme: GraphicalTheme) -> String {
-    let report = Report::new(error);
+    let report = ErrorReport::new(error);
     let mut text = String::new();
     let rendered = GraphicalReportHandler::new_themed(theme)
         .with_links(false)
@@ -40,13 +40,13 @@ fn supports_color() -> bool {
 
 /// An [`Error`] with what miette needs to show its place.
 #[derive(Debug)]
-struct Report {
+struct ErrorReport {
     message: String,
     help: String,
     excerpt: Option<(Excerpt, LabeledSpan)>,
 }
 
-impl Report {
+impl ErrorReport {
     fn new(error: &Error) -> Self {
         let excerpt = match error {
             Error::Scene(scene) => scene.place.as_ref().map(|place| {
@@ -171,15 +171,15 @@ impl SourceCode for Excerpt {
     }
 }
 
-impl fmt::Display for Report {
+impl fmt::Display for ErrorReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.message)
     }
 }
 
-impl std::error::Error for Report {}
+impl std::error::Error for ErrorReport {}
 
-impl Diagnostic for Report {
+impl Diagnostic for ErrorReport {
     fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
         Some(Box::new(&self.help))
     }

@@ -22,13 +22,13 @@ impl Avx2 {
 }
 
 impl Wide for Avx2 {
-    type Planes = Planes;
+    type Planes = Avx2Planes;
 
     #[inline(always)]
-    fn planes(self, slabs: &Slabs) -> Planes {
+    fn planes(self, slabs: &Slabs) -> Avx2Planes {
         let near_rows = slabs.near_rows.to_array().map(|row| row as usize);
         let lanes = |v: Vec3| -> __m128 { v.extend(0.0).into() };
-        Planes {
+        Avx2Planes {
             inverse: lanes(slabs.inverse),
             near: lanes(slabs.near),
             far: lanes(slabs.far),
@@ -39,12 +39,12 @@ impl Wide for Avx2 {
     }
 
     #[inline(always)]
-    fn end_at(self, planes: &mut Planes, end: f32) {
+    fn end_at(self, planes: &mut Avx2Planes, end: f32) {
         planes.end = end;
     }
 
     #[inline(always)]
-    fn meets(self, planes: &Planes, node: &Node) -> (u32, __m256) {
+    fn meets(self, planes: &Avx2Planes, node: &Node) -> (u32, __m256) {
         // SAFETY: the machine has AVX2.
         unsafe { planes.meets(node) }
     }
@@ -67,7 +67,7 @@ impl Wide for Avx2 {
 }
 
 /// The part of a ray that stays the same from node to node.
-pub(super) struct Planes {
+pub(super) struct Avx2Planes {
     /// One over the direction, and the offsets of near and far planes.
     inverse: __m128,
     near: __m128,
@@ -79,7 +79,7 @@ pub(super) struct Planes {
     end: f32,
 }
 
-impl Planes {
+impl Avx2Planes {
     #[inline]
     #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
     fn meets(&self, node: &Node) -> (u32, __m256) {

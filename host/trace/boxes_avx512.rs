@@ -11,22 +11,22 @@ use super::search::{Resting, Search};
 use super::wide::Wide;
 
 impl Wide for Avx512 {
-    type Planes = Planes;
+    type Planes = Avx512Planes;
 
     #[inline(always)]
-    fn planes(self, slabs: &Slabs) -> Planes {
+    fn planes(self, slabs: &Slabs) -> Avx512Planes {
         // SAFETY: the machine has AVX-512.
-        unsafe { Planes::of(slabs) }
+        unsafe { Avx512Planes::of(slabs) }
     }
 
     #[inline(always)]
-    fn end_at(self, planes: &mut Planes, end: f32) {
+    fn end_at(self, planes: &mut Avx512Planes, end: f32) {
         // SAFETY: as above.
         planes.start_and_end = unsafe { near_and_far(0.0, end) };
     }
 
     #[inline(always)]
-    fn meets(self, planes: &Planes, node: &Node) -> (u32, __m256) {
+    fn meets(self, planes: &Avx512Planes, node: &Node) -> (u32, __m256) {
         // SAFETY: as above.
         unsafe { planes.meets(node) }
     }
@@ -56,7 +56,7 @@ impl Wide for Avx512 {
 /// The part of a ray that stays the same from node to node. In each vector, the first and the third
 /// four lanes are for near planes. The others are for far planes, with parameters negated, so that
 /// the latest entry and the earliest exit are both a maximum.
-pub(super) struct Planes {
+pub(super) struct Avx512Planes {
     /// One over the direction.
     inverse: [__m512; 3],
     /// The offsets of the planes.
@@ -66,14 +66,14 @@ pub(super) struct Planes {
     near_rows: [usize; 3],
 }
 
-/// A vector with the lanes of [`Planes`].
+/// A vector with the lanes of [`Avx512Planes`].
 #[inline]
 #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
 fn near_and_far(near: f32, far: f32) -> __m512 {
     _mm512_mask_blend_ps(FAR, _mm512_set1_ps(near), _mm512_set1_ps(-far))
 }
 
-impl Planes {
+impl Avx512Planes {
     #[inline]
     #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
     fn of(slabs: &Slabs) -> Self {

@@ -62,7 +62,7 @@ pub(super) struct Sixteen {
 
 /// One ray's [`Slabs`], and its end in their units.
 #[derive(Clone, Copy)]
-pub(super) struct Planes {
+pub(super) struct RayPlanes {
     pub(super) inverse: [f32; 3],
     pub(super) near: [f32; 3],
     pub(super) far: [f32; 3],
@@ -70,7 +70,7 @@ pub(super) struct Planes {
     pub(super) end: f32,
 }
 
-impl Planes {
+impl RayPlanes {
     #[inline(always)]
     pub(super) fn of(slabs: &Slabs, end: f32) -> Self {
         Self {
@@ -183,9 +183,9 @@ impl OnRung for Ready<'_> {
 impl Sixteen {
     /// The planes of a ray.
     #[inline(always)]
-    pub(super) fn planes(&self, ray: usize) -> Planes {
+    pub(super) fn planes(&self, ray: usize) -> RayPlanes {
         let ray = ray % LANES;
-        Planes {
+        RayPlanes {
             inverse: self.slabs.inverse.each_ref().map(|of| of.0[ray]),
             near: self.slabs.near.each_ref().map(|of| of.0[ray]),
             far: self.slabs.far.each_ref().map(|of| of.0[ray]),

@@ -17,7 +17,7 @@ use spherule_kernel::{Hit, Ray, Rung, Sphere};
 use super::avx512::{Avx512, LANES};
 use super::levels::{Group, Levels};
 use super::search::Query;
-use super::sixteen::{Planes, Sixteen, end_of, is_plain};
+use super::sixteen::{RayPlanes, Sixteen, end_of, is_plain};
 use super::walk::{self, Features};
 
 /// The most boxes that sixteen rays may meet.
@@ -28,12 +28,12 @@ const MOST_ALONE: usize = 1024;
 const WAITING: usize = 1024;
 
 thread_local! {
-    static ROOM: RefCell<Room> = RefCell::default();
+    static SCRATCH: RefCell<Scratch> = RefCell::default();
 }
 
 /// Lists that are reused for the next rays.
 #[derive(Default)]
-struct Room {
+struct Scratch {
     sixteen: Sixteen,
     /// Pairs of rays and the boxes that they meet, and those of the level below.
     pairs: Vec<u32>,
@@ -65,30 +65,30 @@ pub(super) fn trace<const ANY: bool>(
     spheres: &[Sphere],
     mut put: impl FnMut(usize, Hit),
 ) {
-    let mut room = ROOM.take();
+    let mut scratch = SCRATCH.take();
     let Some((top, below)) = levels.groups.split_first() else {
         return;
     };
     for (some, rays) in rays.chunks(LANES).enumerate() {
         let mut put = |index: usize, hit: Hit| put(LANES * some + index, hit);
-        let are_plain = room.sixteen.take(query.rung, rays, &query.extent);
+        let are_plain = scratch.sixteen.take(query.rung, rays, &query.extent);
         if !are_plain {
             walk::trace::<ANY, _>(Features::Avx512(wide), query, rays, spheres, put);
             continue;
         }
-        room.begin(top, rays.len());
+        scratch.begin(top, rays.len());
         for level in below {
-            room.descend(level);
+            scratch.descend(level);
         }
-        if room.pairs.len() > MOST {
+        if scratch.pairs.len() > MOST {
             walk::trace::<ANY, _>(Features::Avx512(wide), query, rays, spheres, put);
         } else if query.rung == Rung::Robust {
-            let nearest = room.evaluate(wide, levels, spheres);
+            let nearest = scratch.evaluate(wide, levels, spheres);
             for index in 0..rays.len() {
                 put(index, nearest.hit(index));
             }
         } else {
-            let mut pairs = room.pairs.iter().peekable();
+            let mut pairs = scratch.pairs.iter().peekable();
             for (index, ray) in rays.iter().enumerate() {
                 let mut search = query.search(ray);
                 while let Some(pair) = pairs.next_if(|pair| of_pair(**pair).0 == index) {
@@ -99,7 +99,7 @@ pub(super) fn trace<const ANY: bool>(
             }
         }
     }
-    ROOM.set(room);
+    SCRATCH.set(scratch);
 }
 
 /// Finds what one ray hits, in a world of at most two levels. There must be at least as many
@@ -120,7 +120,7 @@ pub(super) fn trace_one<const ANY: bool>(
     if !is_plain(ray, slabs.start) {
         return walk::trace_one::<ANY, _>(Features::Avx512(wide), query, ray, spheres);
     }
-    let planes = Planes::of(&slabs, ray.end());
+    let planes = RayPlanes::of(&slabs, ray.end());
     // Where a box is entered, as a float's bits, the lowest of which hold the box's index.
     let mut keys = [const { MaybeUninit::<i32>::uninit() }; MOST_ALONE + LANES];
     let mut count = 0;
@@ -177,7 +177,7 @@ pub(super) fn trace_one<const ANY: bool>(
     search.finish::<ANY>()
 }
 
-impl Room {
+impl Scratch {
     /// Finds the boxes on the top level that rays meet.
     #[inline]
     #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
@@ -318,7 +318,7 @@ impl Group {
     /// Which boxes a ray meets, a bit each, and where it enters them.
     #[inline]
     #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
-    fn meets(&self, planes: &Planes) -> (__mmask16, __m512) {
+    fn meets(&self, planes: &RayPlanes) -> (__mmask16, __m512) {
         let splat = |value: f32| _mm512_set1_ps(value);
         let rows = planes.near_rows.map(|row| row as usize);
         let side = |row: usize| {

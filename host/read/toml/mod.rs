@@ -33,7 +33,7 @@ use particles::ParticlesTable;
 use reader::Reader;
 use sky::SkyTable;
 use sphere::{Known, Row, SphereTable};
-use split::{Batch, Piece, Split};
+use split::{Batch, Piece, SplitText};
 
 /// The file without its `[[sphere]]` tables; every value keeps its span.
 #[derive(Deserialize)]
@@ -65,7 +65,7 @@ pub(super) fn load(path: &Path) -> Result<Scene> {
 ///
 /// [`Error::Scene`](crate::Error::Scene) with the place of the error.
 pub fn parse(path: &Path, text: String) -> Result<Scene> {
-    let split = Split::of(&text);
+    let split = SplitText::of(&text);
     let reader = Reader {
         path,
         text: &text,

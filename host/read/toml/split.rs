@@ -24,7 +24,7 @@ impl Piece {
 
 /// A file, split at its headers. Scenes may have millions of `[[sphere]]` tables, which can be
 /// parsed independently.
-pub(super) struct Split {
+pub(super) struct SplitText {
     /// Batches of `[[sphere]]` tables.
     pub(super) spheres: Vec<Batch>,
     /// Everything else.
@@ -38,7 +38,7 @@ pub(super) struct Batch {
     pub(super) last: usize,
 }
 
-impl Split {
+impl SplitText {
     pub(super) fn of(text: &str) -> Self {
         let mut split = Self {
             spheres: Vec::new(),
