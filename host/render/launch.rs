@@ -94,7 +94,7 @@ pub(super) fn check_pixels(launch: &Launch, count: usize) -> Result<()> {
     )))
 }
 
-pub(super) fn camera(scene: &Scene) -> Result<Camera> {
+fn camera(scene: &Scene) -> Result<Camera> {
     scene
         .view_or_framed()
         .camera(scene.aspect())

@@ -126,13 +126,6 @@ impl Shading {
     pub const fn to_u32(self) -> u32 {
         self as u32
     }
-
-    /// Whether the pixels are measurements rather than light: image files hold them without a
-    /// transfer curve.
-    #[must_use]
-    pub const fn is_data(self) -> bool {
-        !matches!(self.quantity(), Quantity::Light)
-    }
 }
 
 /// Code that is compiled for each mode: see [`Shading::with`].

@@ -87,6 +87,27 @@ pub fn sample_visible(from: Vec3, alpha: f32, u: Vec2) -> Vec3 {
     unit(Vec3::new(half.x * alpha, half.y * alpha, half.z.max(0.0)))
 }
 
+/// Samples a first bounce with this chance, or else a direction with the density cos θ / π. The
+/// direction may be below the surface.
+#[inline]
+#[must_use]
+pub(super) fn sample_mixed(chance: f32, from: Vec3, alpha: f32, u: Vec2, choice: f32) -> Vec3 {
+    if choice < chance {
+        let normal = sample_visible(from, alpha, u);
+        normal * (2.0 * from.dot(normal)) - from
+    } else {
+        unit(Vec3::Z + uniform_sphere(u))
+    }
+}
+
+/// The density of [`sample_mixed`] in a direction of this cosine, in which a first bounce has the
+/// density `first`.
+#[inline]
+#[must_use]
+pub(super) fn mixed_density(chance: f32, first: f32, cosine: f32) -> f32 {
+    chance * first + (1.0 - chance) * cosine_density(cosine)
+}
+
 /// A rough metal seen from a direction.
 #[derive(Clone, Copy, Debug)]
 pub struct RoughMetal {
@@ -132,7 +153,7 @@ impl RoughMetal {
         let tint = fresnel * fresnel * self.mean / (Vec3::ONE - fresnel * (1.0 - self.mean));
         (
             first + tint * others,
-            self.albedo * density + (1.0 - self.albedo) * cosine_density(to.z),
+            mixed_density(self.albedo, density, to.z),
         )
     }
 
@@ -141,12 +162,7 @@ impl RoughMetal {
     #[inline]
     #[must_use]
     pub fn sample(&self, u: Vec2, choice: f32) -> Vec3 {
-        if choice < self.albedo {
-            let normal = sample_visible(self.from, self.alpha, u);
-            normal * (2.0 * self.from.dot(normal)) - self.from
-        } else {
-            unit(Vec3::Z + uniform_sphere(u))
-        }
+        sample_mixed(self.albedo, self.from, self.alpha, u, choice)
     }
 }
 

@@ -24,8 +24,7 @@ use core::f32::consts::FRAC_1_PI;
 
 use glam::{Vec2, Vec3};
 
-use super::microfacet::{SMOOTHEST, Shares, sample_visible, schlick, single_bounce};
-use crate::path::sampling::{cosine_density, uniform_sphere};
+use super::microfacet::{SMOOTHEST, Shares, mixed_density, sample_mixed, schlick, single_bounce};
 use crate::surface::unit;
 
 /// Plastic seen from a direction.
@@ -86,10 +85,7 @@ impl Plastic {
         let coat = schlick(Vec3::splat(self.straight_on), half.dot(to)) * value;
         let through = 1.0 - Shares::towards(table, to.z, self.alpha).of(self.straight_on);
         let base = self.base * (through * FRAC_1_PI * to.z);
-        (
-            coat + base,
-            self.chance * density + (1.0 - self.chance) * cosine_density(to.z),
-        )
+        (coat + base, mixed_density(self.chance, density, to.z))
     }
 
     /// A direction, chosen by `u`; `choice` decides between the coat and the base. May be below
@@ -97,12 +93,7 @@ impl Plastic {
     #[inline]
     #[must_use]
     pub fn sample(&self, u: Vec2, choice: f32) -> Vec3 {
-        if choice < self.chance {
-            let normal = sample_visible(self.from, self.alpha, u);
-            normal * (2.0 * self.from.dot(normal)) - self.from
-        } else {
-            unit(Vec3::Z + uniform_sphere(u))
-        }
+        sample_mixed(self.chance, self.from, self.alpha, u, choice)
     }
 }
 

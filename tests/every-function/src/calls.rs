@@ -2532,9 +2532,6 @@ pub const CALLS: &[Call] = &[
     Call::new("spherule_kernel::shading::Quantity::has_background", |s| {
         seen(spherule_kernel::shading::Quantity::has_background(s.draw()))
     }),
-    Call::new("spherule_kernel::shading::Shading::is_data", |s| {
-        seen(spherule_kernel::shading::Shading::is_data(s.draw()))
-    }),
     Call::new("spherule_kernel::shading::Shading::name", |s| {
         seen(spherule_kernel::shading::Shading::name(s.draw()))
     }),
