@@ -8,7 +8,7 @@ use spherule_kernel::accel::node::Node;
 use spherule_kernel::accel::slabs::Slabs;
 
 use super::search::{Resting, Search};
-use super::wide::Wide;
+use super::wide::{Wide, sort_descending};
 use crate::cpu::InstructionSet;
 
 /// The proof that this machine has AVX2 and the extensions that come with it.
@@ -149,36 +149,5 @@ fn keys(met: u32, near: __m256) -> __m256i {
         keys,
         _mm256_and_si256(is_missed, _mm256_set1_epi32(i32::MIN)),
     );
-    // Batcher's bitonic network: pairs, fours, all eight.
-    let keys = exchange!(
-        keys,
-        _mm256_shuffle_epi32::<0b10_11_00_01>(keys),
-        0b1010_1010
-    );
-    let keys = exchange!(
-        keys,
-        _mm256_shuffle_epi32::<0b00_01_10_11>(keys),
-        0b1100_1100
-    );
-    let keys = exchange!(
-        keys,
-        _mm256_shuffle_epi32::<0b10_11_00_01>(keys),
-        0b1010_1010
-    );
-    let reversed = _mm256_setr_epi32(7, 6, 5, 4, 3, 2, 1, 0);
-    let keys = exchange!(
-        keys,
-        _mm256_permutevar8x32_epi32(keys, reversed),
-        0b1111_0000
-    );
-    let keys = exchange!(
-        keys,
-        _mm256_shuffle_epi32::<0b01_00_11_10>(keys),
-        0b1100_1100
-    );
-    exchange!(
-        keys,
-        _mm256_shuffle_epi32::<0b10_11_00_01>(keys),
-        0b1010_1010
-    )
+    sort_descending!(keys, exchange)
 }

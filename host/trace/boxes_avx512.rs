@@ -8,7 +8,7 @@ use spherule_kernel::accel::slabs::Slabs;
 
 use super::avx512::Avx512;
 use super::search::{Resting, Search};
-use super::wide::Wide;
+use super::wide::{Wide, sort_descending};
 
 impl Wide for Avx512 {
     type Planes = Avx512Planes;
@@ -144,36 +144,5 @@ fn keys(met: u32, near: __m256) -> __m256i {
             _mm256_mask_min_epi32(larger, $smaller, keys, others)
         }};
     }
-    // Batcher's bitonic network: pairs, fours, all eight.
-    let keys = exchange!(
-        keys,
-        _mm256_shuffle_epi32::<0b10_11_00_01>(keys),
-        0b1010_1010
-    );
-    let keys = exchange!(
-        keys,
-        _mm256_shuffle_epi32::<0b00_01_10_11>(keys),
-        0b1100_1100
-    );
-    let keys = exchange!(
-        keys,
-        _mm256_shuffle_epi32::<0b10_11_00_01>(keys),
-        0b1010_1010
-    );
-    let reversed = _mm256_setr_epi32(7, 6, 5, 4, 3, 2, 1, 0);
-    let keys = exchange!(
-        keys,
-        _mm256_permutevar8x32_epi32(keys, reversed),
-        0b1111_0000
-    );
-    let keys = exchange!(
-        keys,
-        _mm256_shuffle_epi32::<0b01_00_11_10>(keys),
-        0b1100_1100
-    );
-    exchange!(
-        keys,
-        _mm256_shuffle_epi32::<0b10_11_00_01>(keys),
-        0b1010_1010
-    )
+    sort_descending!(keys, exchange)
 }

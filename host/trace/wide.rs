@@ -34,3 +34,43 @@ pub(super) trait Wide: Copy {
         node: &Node,
     ) -> bool;
 }
+
+/// Sorts eight keys, the largest first, by Batcher's bitonic network: pairs, fours, all eight.
+/// `exchange!(keys, others, lanes)` keeps the smaller of two keys in the lanes of the mask, and the
+/// larger one in the others.
+macro_rules! sort_descending {
+    ($keys:ident, $exchange:ident) => {{
+        let reversed = _mm256_setr_epi32(7, 6, 5, 4, 3, 2, 1, 0);
+        let keys = $exchange!(
+            $keys,
+            _mm256_shuffle_epi32::<0b10_11_00_01>($keys),
+            0b1010_1010
+        );
+        let keys = $exchange!(
+            keys,
+            _mm256_shuffle_epi32::<0b00_01_10_11>(keys),
+            0b1100_1100
+        );
+        let keys = $exchange!(
+            keys,
+            _mm256_shuffle_epi32::<0b10_11_00_01>(keys),
+            0b1010_1010
+        );
+        let keys = $exchange!(
+            keys,
+            _mm256_permutevar8x32_epi32(keys, reversed),
+            0b1111_0000
+        );
+        let keys = $exchange!(
+            keys,
+            _mm256_shuffle_epi32::<0b01_00_11_10>(keys),
+            0b1100_1100
+        );
+        $exchange!(
+            keys,
+            _mm256_shuffle_epi32::<0b10_11_00_01>(keys),
+            0b1010_1010
+        )
+    }};
+}
+pub(super) use sort_descending;
