@@ -1,12 +1,14 @@
-//! Vectors that implement the kernel's [`Lane`]: sixteen 32-bit floats, sixteen 64-bit floats, and
-//! four 32-bit floats.
+//! Vectors that implement the kernel's [`Lane`]: sixteen, eight and four 32-bit floats, and sixteen
+//! 64-bit floats.
 
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
 use fearless_simd::{
-    Select, Simd, SimdBase, SimdFloat, SimdMask, f32x16, f64x8, mask32x16, mask64x8,
+    Select, Simd, SimdBase, SimdFloat, SimdMask, f32x8, f32x16, f64x8, mask32x8, mask32x16,
+    mask64x8,
 };
 use glam::{Vec3, Vec4};
+use spherule_kernel::accel::slabs::BoxLane;
 use spherule_kernel::lane::{Lane, Lane3};
 
 /// The lanes of a vector.
@@ -15,6 +17,10 @@ pub(crate) const LANES: usize = 16;
 /// Sixteen 32-bit floats.
 #[derive(Clone, Copy)]
 pub(crate) struct Single16<S: Simd>(pub(crate) f32x16<S>);
+
+/// Eight 32-bit floats.
+#[derive(Clone, Copy)]
+pub(crate) struct Single8<S: Simd>(pub(crate) f32x8<S>);
 
 /// Sixteen 64-bit floats: the first eight, then the last eight.
 #[derive(Clone, Copy)]
@@ -38,6 +44,23 @@ impl<S: Simd> Single16<S> {
     #[inline(always)]
     pub(crate) fn store(self, values: &mut [f32; LANES]) {
         self.0.store_array(values);
+    }
+
+    /// The same vector in every lane.
+    #[inline(always)]
+    pub(crate) fn splat3(simd: S, vector: Vec3) -> Lane3<Self> {
+        Lane3 {
+            x: Self::splat(simd, vector.x),
+            y: Self::splat(simd, vector.y),
+            z: Self::splat(simd, vector.z),
+        }
+    }
+}
+
+impl<S: Simd> Single8<S> {
+    #[inline(always)]
+    pub(crate) fn splat(simd: S, value: f32) -> Self {
+        Self(f32x8::splat(simd, value))
     }
 
     /// The same vector in every lane.
@@ -94,6 +117,15 @@ macro_rules! operators {
                 }
             }
 
+            impl<S: Simd> $operation for Single8<S> {
+                type Output = Self;
+
+                #[inline(always)]
+                fn $function(self, other: Self) -> Self {
+                    Self(self.0.$function(other.0))
+                }
+            }
+
             impl $operation for Four {
                 type Output = Self;
 
@@ -116,15 +148,6 @@ macro_rules! operators {
 }
 
 operators!(Add add, Sub sub, Mul mul, Div div);
-
-impl<S: Simd> Neg for Single16<S> {
-    type Output = Self;
-
-    #[inline(always)]
-    fn neg(self) -> Self {
-        Self(-self.0)
-    }
-}
 
 impl<S: Simd> Neg for Double16<S> {
     type Output = Self;
@@ -162,59 +185,88 @@ impl<S: Simd> Not for DoubleMask<S> {
     }
 }
 
-impl<S: Simd> Lane for Single16<S> {
-    type Mask = mask32x16<S>;
+macro_rules! single {
+    ($single:ident, $vector:ident, $mask:ident) => {
+        impl<S: Simd> Neg for $single<S> {
+            type Output = Self;
 
-    #[inline(always)]
-    fn splat(self, value: f32) -> Self {
-        Self(f32x16::splat(self.0.simd, value))
-    }
+            #[inline(always)]
+            fn neg(self) -> Self {
+                Self(-self.0)
+            }
+        }
 
-    #[inline(always)]
-    fn abs(self) -> Self {
-        Self(self.0.abs())
-    }
+        impl<S: Simd> Lane for $single<S> {
+            type Mask = $mask<S>;
 
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        Self(self.0.sqrt())
-    }
+            #[inline(always)]
+            fn splat(self, value: f32) -> Self {
+                Self($vector::splat(self.0.simd, value))
+            }
 
-    #[inline(always)]
-    fn mul_add_rough(self, factor: Self, term: Self) -> Self {
-        Self(self.0.mul_add(factor.0, term.0))
-    }
+            #[inline(always)]
+            fn abs(self) -> Self {
+                Self(self.0.abs())
+            }
 
-    #[inline(always)]
-    fn mul_sub_rough(self, factor: Self, term: Self) -> Self {
-        Self(self.0.mul_sub(factor.0, term.0))
-    }
+            #[inline(always)]
+            fn sqrt(self) -> Self {
+                Self(self.0.sqrt())
+            }
 
-    #[inline(always)]
-    fn select(mask: Self::Mask, yes: Self, no: Self) -> Self {
-        Self(mask.select(yes.0, no.0))
-    }
+            #[inline(always)]
+            fn mul_add_rough(self, factor: Self, term: Self) -> Self {
+                Self(self.0.mul_add(factor.0, term.0))
+            }
 
-    #[inline(always)]
-    fn simd_lt(self, other: Self) -> Self::Mask {
-        self.0.simd_lt(other.0)
-    }
+            #[inline(always)]
+            fn mul_sub_rough(self, factor: Self, term: Self) -> Self {
+                Self(self.0.mul_sub(factor.0, term.0))
+            }
 
-    #[inline(always)]
-    fn simd_le(self, other: Self) -> Self::Mask {
-        self.0.simd_le(other.0)
-    }
+            #[inline(always)]
+            fn select(mask: Self::Mask, yes: Self, no: Self) -> Self {
+                Self(mask.select(yes.0, no.0))
+            }
 
-    #[inline(always)]
-    fn simd_gt(self, other: Self) -> Self::Mask {
-        self.0.simd_gt(other.0)
-    }
+            #[inline(always)]
+            fn simd_lt(self, other: Self) -> Self::Mask {
+                self.0.simd_lt(other.0)
+            }
 
-    #[inline(always)]
-    fn simd_ge(self, other: Self) -> Self::Mask {
-        self.0.simd_ge(other.0)
-    }
+            #[inline(always)]
+            fn simd_le(self, other: Self) -> Self::Mask {
+                self.0.simd_le(other.0)
+            }
+
+            #[inline(always)]
+            fn simd_gt(self, other: Self) -> Self::Mask {
+                self.0.simd_gt(other.0)
+            }
+
+            #[inline(always)]
+            fn simd_ge(self, other: Self) -> Self::Mask {
+                self.0.simd_ge(other.0)
+            }
+        }
+
+        impl<S: Simd> BoxLane for $single<S> {
+            #[inline(always)]
+            fn largest_or_zero(x: Self, y: Self, z: Self) -> Self {
+                let zero = x.splat(0.0);
+                Self(x.0.max(y.0).max(z.0.max(zero.0)))
+            }
+
+            #[inline(always)]
+            fn smallest(x: Self, y: Self, z: Self, end: Self) -> Self {
+                Self(x.0.min(y.0).min(z.0.min(end.0)))
+            }
+        }
+    };
 }
+
+single!(Single16, f32x16, mask32x16);
+single!(Single8, f32x8, mask32x8);
 
 impl<S: Simd> Lane for Double16<S> {
     type Mask = DoubleMask<S>;

@@ -7,7 +7,7 @@ mod common;
 use common::{all_adapters, device, open_through_naga, skips};
 use spherule::Device;
 use spherule::accuracy::families::Family;
-use spherule::accuracy::measure::{Measured, intersect_all, intersect_on_gpu, judge};
+use spherule::accuracy::measure::{RungErrors, intersect_all, intersect_on_gpu, judge};
 use spherule::device::canary::Canary;
 use spherule::kernel::Rung;
 use spherule::ulp::shown;
@@ -19,7 +19,7 @@ fn rays() -> usize {
         .unwrap_or(100_000)
 }
 
-fn measure(device: &Device, rung: Rung, family: Family) -> Measured {
+fn measure(device: &Device, rung: Rung, family: Family) -> RungErrors {
     let samples = family.sample(2026, rays());
     let answers = intersect_all(device, rung, &samples).expect("the rung runs here");
     let measured = judge(&samples, &answers);

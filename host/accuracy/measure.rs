@@ -19,7 +19,7 @@ use crate::ulp;
 
 /// The errors of a rung.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Measured {
+pub struct RungErrors {
     /// The number of rays.
     pub rays: usize,
     /// The number of rays that truly hit.
@@ -177,18 +177,18 @@ pub fn intersect_on_gpu(gpu: &Gpu, rung: Rung, samples: &[(Ray, Sphere)]) -> Res
 
 /// Judges the answers of [`intersect_all`] by exact arithmetic.
 #[must_use]
-pub fn judge(samples: &[(Ray, Sphere)], answers: &[f32]) -> Measured {
+pub fn judge(samples: &[(Ray, Sphere)], answers: &[f32]) -> RungErrors {
     samples
         .par_iter()
         .zip(answers)
-        .fold(Measured::none, |mut measured, ((ray, sphere), found)| {
+        .fold(RungErrors::none, |mut measured, ((ray, sphere), found)| {
             measured.add(ray, sphere, *found);
             measured
         })
-        .reduce(Measured::none, Measured::merge)
+        .reduce(RungErrors::none, RungErrors::merge)
 }
 
-impl Measured {
+impl RungErrors {
     /// The error, in units in the last place, that this share of the hits does not exceed. Above 1
     /// it is rounded up to the end of a bucket of the histogram, or to the largest error. `None`
     /// without hits.

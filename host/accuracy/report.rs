@@ -4,7 +4,7 @@
 use std::fmt::Write;
 
 use super::frames::Frame;
-use super::measure::Measured;
+use super::measure::RungErrors;
 use super::price::Price;
 use super::samples::Step;
 use crate::ulp;
@@ -17,12 +17,12 @@ pub struct Row<'a> {
     /// The time of an intersection.
     pub price: Price,
     /// The rung's errors.
-    pub measured: &'a Measured,
+    pub measured: &'a RungErrors,
 }
 
 /// The results of one family.
 #[derive(Clone, Debug)]
-pub struct Family<'a> {
+pub struct FamilyResults<'a> {
     /// The family's name.
     pub name: &'a str,
     /// A sentence below the plot.
@@ -50,7 +50,7 @@ code{font-size:.8em}pre{font-size:.75rem;overflow-x:auto;background:#f6f6f6;padd
 pub fn page(
     device: &str,
     rays: u32,
-    families: &[Family<'_>],
+    families: &[FamilyResults<'_>],
     frames: Option<(&str, &[Frame])>,
     steps: &[Step],
     table: &str,

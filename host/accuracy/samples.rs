@@ -55,7 +55,7 @@ fn of_reference(most: u32) -> u32 {
 
 /// The steps, and the samples of their reference.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Measured {
+pub struct Convergence {
     /// Rung by rung, the fewest samples first.
     pub steps: Vec<Step>,
     /// How many samples a pixel the reference has.
@@ -82,7 +82,7 @@ pub fn measure(
     compiling: Duration,
     until: Option<Instant>,
     progress: Progress<'_>,
-) -> Result<Measured> {
+) -> Result<Convergence> {
     let left = || until.map(|until| until.saturating_duration_since(Instant::now()));
     let all = in_all(rungs.len(), most) as f64;
     let mut done = 0.0;
@@ -147,7 +147,7 @@ pub fn measure(
             samples = next;
         }
     }
-    Ok(Measured {
+    Ok(Convergence {
         steps,
         reference: reached,
         is_cut,

@@ -17,7 +17,7 @@ use crate::trace::{CpuTracer, GpuTracer};
 
 /// The measurements of one world.
 #[derive(Clone, Debug, Serialize)]
-pub struct Measured {
+pub struct WorldSpeeds {
     /// The world's name.
     pub scene: String,
     /// The number of spheres.
@@ -134,7 +134,7 @@ pub fn measure(
     reach: f32,
     plan: Plan,
     limit: Option<&Limit>,
-) -> Result<Measured> {
+) -> Result<WorldSpeeds> {
     let spheres = &scene.world.spheres;
     let mut builds = Vec::new();
     for _ in 0..plan.rounds.min(3) {
@@ -171,7 +171,7 @@ pub fn measure(
             limit.map(|limit| speed.mrays_per_s * 1e6 / limit.rays_per_s(kind, nodes, spheres));
     }
     let [primary, shadow, ambient, incoherent] = speeds;
-    Ok(Measured {
+    Ok(WorldSpeeds {
         scene: name.into(),
         spheres: spheres.len(),
         has_tree: !builds.is_empty(),

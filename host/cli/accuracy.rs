@@ -13,7 +13,7 @@ use super::progress::Bar;
 use super::{load, note, write_json};
 use crate::accuracy::families::Family;
 use crate::accuracy::frames::{self, Frame};
-use crate::accuracy::measure::{Escalation, Measured, intersect_all, judge, self_hits};
+use crate::accuracy::measure::{Escalation, RungErrors, intersect_all, judge, self_hits};
 use crate::accuracy::price::{self, Price};
 use crate::accuracy::samples::{self, Step};
 use crate::accuracy::{report, scene_rays};
@@ -73,7 +73,7 @@ struct FamilyReport {
 struct RungReport {
     rung: &'static str,
     price: Price,
-    measured: Measured,
+    measured: RungErrors,
     /// Rays that left a hit outwards and hit the same sphere again.
     self_hits: usize,
 }
@@ -535,10 +535,10 @@ fn digits(nanoseconds: f64) -> String {
 }
 
 fn page(report: &AccuracyReport) -> String {
-    let families: Vec<report::Family<'_>> = report
+    let families: Vec<report::FamilyResults<'_>> = report
         .families
         .iter()
-        .map(|family| report::Family {
+        .map(|family| report::FamilyResults {
             name: family.family,
             note: family.escalation.to_string(),
             rungs: family

@@ -11,7 +11,7 @@ use super::{note, print, write_json};
 use crate::accel::Acceleration;
 use crate::bench::export::{self, export};
 use crate::bench::limit::Limit;
-use crate::bench::measure::{Measured, Plan, Speed, measure};
+use crate::bench::measure::{Plan, Speed, WorldSpeeds, measure};
 use crate::bench::rays::RaySets;
 use crate::bench::scenes::{BenchScene, Source};
 use crate::bench::verify::{Verified, verify};
@@ -30,7 +30,7 @@ struct BenchReport<'a> {
     device: String,
     #[serde(skip_serializing_if = "Option::is_none")]
     limit: Option<Limit>,
-    scenes: &'a [Measured],
+    scenes: &'a [WorldSpeeds],
 }
 
 pub(super) fn run(arguments: &BenchArguments) -> Result<ExitCode> {
@@ -290,7 +290,7 @@ fn head(width: u32, height: u32, plan: Plan, has_limit: bool) -> String {
     )
 }
 
-fn row(measured: &Measured) -> String {
+fn row(measured: &WorldSpeeds) -> String {
     let rays = |speed: &Speed| {
         if speed.rays == 0 {
             "-".to_owned()

@@ -24,7 +24,7 @@ use crate::render::{Rendered, Settings, estimate, render};
 use crate::scene::Scene;
 use crate::shown::shown_path;
 use crate::write::same::{refuse_clashes, refuse_inputs};
-use crate::write::{Format, Output, Room};
+use crate::write::{Format, Output, ReservedMemory};
 
 /// What `--stats` writes.
 #[derive(Debug, Serialize)]
@@ -165,7 +165,7 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<ExitCode> {
 
     // An image that a signal or a time limit cuts has opacities.
     let format = Format::of(outputs.image.path())?;
-    let room = Room::reserve(format, scene.width, scene.height, true)?;
+    let room = ReservedMemory::reserve(format, scene.width, scene.height, true)?;
     // From here on the first signal ends the tracing, and the picture is kept.
     let graceful = Graceful::new();
     let rendered = render_or_fall_back(arguments, &scene, settings, &mut device)?;

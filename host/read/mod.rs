@@ -23,7 +23,8 @@ use text::{COMPRESSED, extension, uncompressed};
 const SCENE: &str = "toml";
 
 impl Scene {
-    /// Reads a scene, or particles in one of the [`FORMATS`](particles::FORMATS).
+    /// Reads a scene, or particles in one of the
+    /// [`PARTICLE_FORMATS`](particles::PARTICLE_FORMATS).
     ///
     /// # Errors
     ///
@@ -32,7 +33,7 @@ impl Scene {
         let path = path.as_ref();
         let mut scene = if is_scene(path) {
             toml::load(path)?
-        } else if let Some(format) = particles::Format::of(path) {
+        } else if let Some(format) = particles::ParticleFormat::of(path) {
             Self::new(look::world(&format.load(path)?))
         } else {
             return Err(Error::Scene(SceneError::without_place(

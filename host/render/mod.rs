@@ -18,13 +18,13 @@ pub mod estimate;
 pub mod fit;
 #[cfg(feature = "gpu")]
 pub mod gpu;
+mod image_memory;
 mod launch;
 #[cfg(feature = "gpu")]
 pub mod pace;
 mod packet;
 pub mod paths;
 mod rendered;
-mod room;
 mod settings;
 #[cfg(feature = "gpu")]
 mod tiles;
@@ -43,9 +43,9 @@ use crate::error::Result;
 use crate::film::Image;
 use crate::memory;
 use crate::scene::Scene;
+use image_memory::memory_for;
 pub use launch::whole_image;
 pub use rendered::{Rendered, Timings};
-use room::memory_for;
 pub use settings::{EffectChoice, Progress, QUIET, Settings};
 
 /// Renders `scene` on `device`.

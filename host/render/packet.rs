@@ -18,7 +18,9 @@ use glam::{DVec3, UVec2, UVec4, Vec2, Vec3};
 use spherule_kernel::accel::node::{Extent, Node, Tree};
 use spherule_kernel::cull::bounds::Aim;
 use spherule_kernel::cull::discriminant::Target;
+use spherule_kernel::cull::frustum::inward_normal;
 use spherule_kernel::lane::{Lane, Lane3};
+use spherule_kernel::precision::root::root_within;
 use spherule_kernel::precision::{self, double, intersect, robust};
 use spherule_kernel::{Camera, Hit, Launch, Ray, Rung, Sphere};
 
@@ -94,37 +96,45 @@ impl Frusta {
     #[must_use]
     pub fn of(launch: &Launch) -> Self {
         let camera = &launch.camera;
-        let [forward, right, up] = [camera.forward, camera.right, camera.up].map(Vec3::as_dvec3);
+        let in_doubles = |v: Vec3| Lane3 {
+            x: f64::from(v.x),
+            y: f64::from(v.y),
+            z: f64::from(v.z),
+        };
+        let [forward, right, up] = [camera.forward, camera.right, camera.up].map(in_doubles);
         let last = launch.tile_size - UVec2::ONE;
         let film = |x: u32, y: u32| {
             let pixel = launch.tile_origin + UVec2::new(x, y).min(last);
             Camera::film(pixel, launch.image_size)
         };
-        // Through the rays at x, or at y, and towards a side. A camera whose axes lie in a plane
-        // has none, and every box is inside.
-        let plane = |normal: DVec3, towards: DVec3| {
-            let normal = normal.normalize_or_zero();
-            Plane::farthest((normal * normal.dot(towards).signum()).as_vec3())
+        // The plane through the rays at `offset` along `across`. Its inside is on the side where
+        // offsets are larger, or smaller.
+        let plane = |across: Lane3<f64>, axis: Lane3<f64>, offset: f32, is_larger: bool| {
+            let side = if is_larger { 1.0 } else { -1.0 };
+            let offset = across.scaled(offset.into());
+            let normal = inward_normal(forward, offset, axis, across.scaled(side));
+            Plane::farthest(DVec3::new(normal.x, normal.y, normal.z).as_vec3())
         };
         let squares = |pixels: u32| (0..pixels).step_by(SIDE);
         let far = SIDE as u32 - 1;
         let middle = SIDE as u32 / 2;
         let column = |x: u32| {
-            let at = |x| (forward + right * f64::from(film(x, 0).x)).cross(up);
+            let at = |x, is_larger| plane(right, up, film(x, 0).x, is_larger);
             [
-                plane(at(x), right),
-                plane(at(x + far), -right),
-                plane(at(x + middle - 1), -right),
-                plane(at(x + middle), right),
+                at(x, true),
+                at(x + far, false),
+                at(x + middle - 1, false),
+                at(x + middle, true),
             ]
         };
+        // Rows are counted from above.
         let row = |y: u32| {
-            let at = |y| (forward + up * f64::from(film(0, y).y)).cross(right);
+            let at = |y, is_larger| plane(up, right, film(0, y).y, is_larger);
             [
-                plane(at(y), -up),
-                plane(at(y + far), up),
-                plane(at(y + middle - 1), up),
-                plane(at(y + middle), -up),
+                at(y, false),
+                at(y + far, true),
+                at(y + middle - 1, true),
+                at(y + middle, false),
             ]
         };
         let pixels = |first: u32| std::array::from_fn(|i| first + i as u32);
@@ -570,11 +580,11 @@ impl Packet {
         let t_min = Single16::splat(simd, self.t_min);
         let none = Single16::splat(simd, Hit::NONE_T);
         let best = Single16::load(simd, &self.t[group].0);
-        let within = |t: Single16<S>| t.simd_ge(t_min) & t.simd_le(best) & t.simd_lt(none);
-        let t = Single16::select(within(near), near, far);
+        let (t, is_within) = root_within(near, far, t_min, none);
         let sphere = u32x16::load_array_ref(simd, &self.sphere[group]);
         let is_lower = u32x16::splat(simd, index).simd_lt(sphere);
-        let is_new = meets & within(t) & (t.simd_lt(best) | is_lower);
+        let is_nearer = t.simd_lt(best) | (t.simd_le(best) & is_lower);
+        let is_new = meets & is_within & is_nearer;
         Single16::select(is_new, t, best).store(&mut self.t[group].0);
         self.put_sphere(simd, group, is_new, index);
         self.end[group] = largest(&self.t[group].0);

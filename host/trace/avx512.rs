@@ -2,7 +2,7 @@
 
 use std::arch::x86_64::*;
 
-use fearless_simd::{Level, x86};
+use fearless_simd::x86;
 use glam::Vec3;
 use spherule_kernel::Sphere;
 use spherule_kernel::cull::bounds::{Line, OFF, OFF_BY_RADIUS, OUTSIDE};
@@ -18,10 +18,7 @@ pub(super) struct Avx512(pub(super) x86::Avx512);
 
 impl Avx512 {
     pub(super) fn of(instructions: InstructionSet) -> Option<Self> {
-        match instructions.level()? {
-            Level::Avx512(token) => Some(Self(token)),
-            _ => None,
-        }
+        instructions.level()?.as_avx512().map(Self)
     }
 }
 

@@ -7,16 +7,16 @@
 //! | `single` | rays on the CPU: chooses among the ways below |
 //! | `search` | one ray's search among spheres, four spheres at a time |
 //! | `walk`, `wide` | rays through a tree, all eight boxes of a node at once |
-//! | `boxes_avx2`, `boxes_avx512` | the tests of those boxes with AVX2 and with AVX-512 |
+//! | `boxes`, `sort` | the test of those boxes, and their order along the ray |
 //! | `levels`, `stream`, `sixteen` | boxes of sixteen boxes, and sixteen rays that go through them together, with AVX-512 |
-//! | `avx512` | the proof that this machine has AVX-512, and culling of sixteen spheres for one ray |
+//! | `avx2`, `avx512` | the proofs that this machine has them; culling of sixteen spheres for one ray |
 
+#[cfg(target_arch = "x86_64")]
+mod avx2;
 #[cfg(target_arch = "x86_64")]
 mod avx512;
 #[cfg(target_arch = "x86_64")]
-mod boxes_avx2;
-#[cfg(target_arch = "x86_64")]
-mod boxes_avx512;
+mod boxes;
 pub mod cpu;
 #[cfg(feature = "gpu")]
 pub mod gpu;
@@ -29,6 +29,8 @@ mod search;
 pub(crate) mod single;
 #[cfg(target_arch = "x86_64")]
 mod sixteen;
+#[cfg(target_arch = "x86_64")]
+mod sort;
 #[cfg(target_arch = "x86_64")]
 mod stream;
 #[cfg(target_arch = "x86_64")]

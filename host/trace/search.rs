@@ -23,7 +23,7 @@ use super::avx512::{self, Avx512};
 use crate::lanes::Four;
 
 /// Spheres that are culled at a time.
-const LANES: usize = 4;
+const WIDTH: usize = 4;
 
 /// What all rays have in common: the rung's formula, and the tree if there is one.
 #[derive(Clone, Copy, Debug)]
@@ -204,7 +204,7 @@ impl Search {
         while at < end {
             // The last sphere fills the lanes beyond the end.
             let last = spheres.count() - 1;
-            let four = if last - at >= LANES as u32 - 1 {
+            let four = if last - at >= WIDTH as u32 - 1 {
                 // SAFETY: each is at most the last.
                 [0, 1, 2, 3].map(|lane| unsafe { spheres.sphere(at + lane) })
             } else {
@@ -212,12 +212,12 @@ impl Search {
                 [0, 1, 2, 3].map(|lane| unsafe { spheres.sphere(at + lane.min(last - at)) })
             };
             let mut found = self.cull(four);
-            found &= (1 << (end - at).min(LANES as u32)) - 1;
+            found &= (1 << (end - at).min(WIDTH as u32)) - 1;
             self.evaluate::<ANY, S>(spheres, at, found);
             if ANY & self.hit.is_some() {
                 return;
             }
-            at += LANES as u32;
+            at += WIDTH as u32;
         }
     }
 
@@ -300,7 +300,7 @@ impl Search {
 
     /// Which of four spheres may be hit, a bit each.
     #[inline(always)]
-    fn cull(&self, spheres: [Sphere; LANES]) -> u32 {
+    fn cull(&self, spheres: [Sphere; WIDTH]) -> u32 {
         let [first, second, third, fourth] = spheres.map(Sphere::to_vec4);
         let rows = Mat4::from_cols(first, second, third, fourth).transpose();
         let splat = |value| Four(Vec4::splat(value));

@@ -10,6 +10,7 @@ use spherule_kernel::cull::bounds::Line;
 use spherule_kernel::lane::{Lane as _, Lane3};
 use spherule_kernel::precision::OnRung;
 use spherule_kernel::precision::robust::Quadratic;
+use spherule_kernel::precision::root::root_within;
 use spherule_kernel::{Hit, Ray, Rung, Sphere};
 
 use super::avx512::{self, Avx512};
@@ -63,9 +64,9 @@ pub(super) struct Sixteen {
 /// One ray's [`Slabs`], and its end in their units.
 #[derive(Clone, Copy)]
 pub(super) struct RayPlanes {
-    pub(super) inverse: [f32; 3],
-    pub(super) near: [f32; 3],
-    pub(super) far: [f32; 3],
+    pub(super) inverse: Vec3,
+    pub(super) near: Vec3,
+    pub(super) far: Vec3,
     pub(super) near_rows: [u32; 3],
     pub(super) end: f32,
 }
@@ -74,9 +75,9 @@ impl RayPlanes {
     #[inline(always)]
     pub(super) fn of(slabs: &Slabs, end: f32) -> Self {
         Self {
-            inverse: slabs.inverse.to_array(),
-            near: slabs.near.to_array(),
-            far: slabs.far.to_array(),
+            inverse: slabs.inverse,
+            near: slabs.near,
+            far: slabs.far,
             near_rows: slabs.near_rows.to_array(),
             end: end_of(slabs, end),
         }
@@ -185,10 +186,11 @@ impl Sixteen {
     #[inline(always)]
     pub(super) fn planes(&self, ray: usize) -> RayPlanes {
         let ray = ray % LANES;
+        let of = |lanes: &[Lanes<f32>; 3]| Vec3::from_array(lanes.each_ref().map(|of| of.0[ray]));
         RayPlanes {
-            inverse: self.slabs.inverse.each_ref().map(|of| of.0[ray]),
-            near: self.slabs.near.each_ref().map(|of| of.0[ray]),
-            far: self.slabs.far.each_ref().map(|of| of.0[ray]),
+            inverse: of(&self.slabs.inverse),
+            near: of(&self.slabs.near),
+            far: of(&self.slabs.far),
             near_rows: self.slabs.near_rows.each_ref().map(|of| of.0[ray]),
             end: self.slabs.end.0[ray],
         }
@@ -238,9 +240,8 @@ impl Sixteen {
         let (a, inverse) = (of(&self.squared), of(&self.inverse_squared));
         let quadratic = Quadratic::of(o, radius, d, a, inverse);
         let (near, far) = quadratic.roots();
-        let t_min = of(&self.t_min);
-        let t = Single16::select(near.simd_ge(t_min), near, far);
-        let hits = t.simd_ge(t_min) & t.simd_lt(of(&self.end)) & quadratic.meets();
+        let (t, is_within) = root_within(near, far, of(&self.t_min), of(&self.end));
+        let hits = is_within & quadratic.meets();
         let none = Single16::splat(simd, Hit::NONE_T);
         Single16::select(hits, t, none).0.into()
     }

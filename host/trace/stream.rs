@@ -11,7 +11,9 @@ use std::arch::x86_64::*;
 use std::cell::RefCell;
 use std::mem::MaybeUninit;
 
-use spherule_kernel::accel::slabs::Slabs;
+use fearless_simd::SimdMask;
+use spherule_kernel::accel::slabs::{Boxes, Slabs};
+use spherule_kernel::lane::{Lane as _, Lane3};
 use spherule_kernel::{Hit, Ray, Rung, Sphere};
 
 use super::avx512::{Avx512, LANES};
@@ -19,6 +21,7 @@ use super::levels::{Group, Levels};
 use super::search::Query;
 use super::sixteen::{RayPlanes, Sixteen, end_of, is_plain};
 use super::walk::{self, Features};
+use crate::lanes::Single16;
 
 /// The most boxes that sixteen rays may meet.
 const MOST: usize = 64 * LANES;
@@ -56,7 +59,9 @@ const fn of_pair(pair: u32) -> (usize, usize) {
 
 /// Finds what each ray hits; `put` receives the ray's index. There must be at least as many spheres
 /// as the levels name.
-#[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
+#[target_feature(
+    enable = "adx,aes,avx512bitalg,avx512bw,avx512cd,avx512dq,avx512f,avx512ifma,avx512vbmi,avx512vbmi2,avx512vl,avx512vnni,avx512vpopcntdq,bmi1,bmi2,cmpxchg16b,fma,fxsr,gfni,lzcnt,movbe,pclmulqdq,popcnt,rdrand,rdseed,sha,vaes,vpclmulqdq,xsave,xsavec,xsaveopt,xsaves"
+)]
 pub(super) fn trace<const ANY: bool>(
     wide: Avx512,
     levels: &Levels,
@@ -76,9 +81,9 @@ pub(super) fn trace<const ANY: bool>(
             walk::trace::<ANY, _>(Features::Avx512(wide), query, rays, spheres, put);
             continue;
         }
-        scratch.begin(top, rays.len());
+        scratch.begin(wide, top, rays.len());
         for level in below {
-            scratch.descend(level);
+            scratch.descend(wide, level);
         }
         if scratch.pairs.len() > MOST {
             walk::trace::<ANY, _>(Features::Avx512(wide), query, rays, spheres, put);
@@ -106,7 +111,10 @@ pub(super) fn trace<const ANY: bool>(
 /// spheres as the levels name.
 ///
 /// A single ray goes through boxes from the nearest on, and skips those behind its nearest hit.
-#[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
+// As for [`Nearest::evaluate`].
+#[target_feature(
+    enable = "adx,aes,avx512bitalg,avx512bw,avx512cd,avx512dq,avx512f,avx512ifma,avx512vbmi,avx512vbmi2,avx512vl,avx512vnni,avx512vpopcntdq,bmi1,bmi2,cmpxchg16b,fma,fxsr,gfni,lzcnt,movbe,pclmulqdq,popcnt,rdrand,rdseed,sha,vaes,vpclmulqdq,xsave,xsavec,xsaveopt,xsaves"
+)]
 pub(super) fn trace_one<const ANY: bool>(
     wide: Avx512,
     levels: &Levels,
@@ -125,7 +133,7 @@ pub(super) fn trace_one<const ANY: bool>(
     let mut keys = [const { MaybeUninit::<i32>::uninit() }; MOST_ALONE + LANES];
     let mut count = 0;
     let mut enter = |group: &Group, first: usize| {
-        let (is_met, enters) = group.meets(&planes);
+        let (is_met, enters) = group.meets(wide, &planes);
         // (enters & !INDEX) | index
         let found = _mm512_ternarylogic_epi32::<0b1101_1000>(
             _mm512_castps_si512(enters),
@@ -141,7 +149,7 @@ pub(super) fn trace_one<const ANY: bool>(
     };
     if let [top, bottom] = &levels.groups[..] {
         for (at, group) in top.iter().enumerate() {
-            let (mut met, _) = group.meets(&planes);
+            let (mut met, _) = group.meets(wide, &planes);
             while met != 0 {
                 let index = LANES * at + met.trailing_zeros() as usize;
                 met &= met - 1;
@@ -180,12 +188,15 @@ pub(super) fn trace_one<const ANY: bool>(
 impl Scratch {
     /// Finds the boxes on the top level that rays meet.
     #[inline]
-    #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
-    fn begin(&mut self, top: &[Group], count: usize) {
+    // As for [`Nearest::evaluate`].
+    #[target_feature(
+        enable = "adx,aes,avx512bitalg,avx512bw,avx512cd,avx512dq,avx512f,avx512ifma,avx512vbmi,avx512vbmi2,avx512vl,avx512vnni,avx512vpopcntdq,bmi1,bmi2,cmpxchg16b,fma,fxsr,gfni,lzcnt,movbe,pclmulqdq,popcnt,rdrand,rdseed,sha,vaes,vpclmulqdq,xsave,xsavec,xsaveopt,xsaves"
+    )]
+    fn begin(&mut self, wide: Avx512, top: &[Group], count: usize) {
         let mut pairs = Writer::new(&mut self.pairs, LANES * top.len() * count);
         for ray in 0..count {
             for (index, group) in top.iter().enumerate() {
-                let (is_met, _) = group.meets(&self.sixteen.planes(ray));
+                let (is_met, _) = group.meets(wide, &self.sixteen.planes(ray));
                 let first = _mm512_set1_epi32(pair(ray, LANES * index).cast_signed());
                 // SAFETY: at most sixteen of each group.
                 unsafe { pairs.push(is_met, _mm512_or_epi32(first, lanes())) };
@@ -196,15 +207,18 @@ impl Scratch {
 
     /// Finds the boxes of a level that rays meet in the groups that they are paired with.
     #[inline]
-    #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
-    fn descend(&mut self, level: &[Group]) {
+    // As for [`Nearest::evaluate`].
+    #[target_feature(
+        enable = "adx,aes,avx512bitalg,avx512bw,avx512cd,avx512dq,avx512f,avx512ifma,avx512vbmi,avx512vbmi2,avx512vl,avx512vnni,avx512vpopcntdq,bmi1,bmi2,cmpxchg16b,fma,fxsr,gfni,lzcnt,movbe,pclmulqdq,popcnt,rdrand,rdseed,sha,vaes,vpclmulqdq,xsave,xsavec,xsaveopt,xsaves"
+    )]
+    fn descend(&mut self, wide: Avx512, level: &[Group]) {
         let mut below = Writer::new(&mut self.below, LANES * self.pairs.len());
         for met in &self.pairs {
             let (ray, index) = of_pair(*met);
             // SAFETY: a group on top, or that of a box of the level above, which each have one
             // here; unused boxes were not met.
             let group = unsafe { level.get_unchecked(index) };
-            let (is_met, _) = group.meets(&self.sixteen.planes(ray));
+            let (is_met, _) = group.meets(wide, &self.sixteen.planes(ray));
             let first = _mm512_set1_epi32(pair(ray, LANES * index).cast_signed());
             // SAFETY: at most sixteen of each pair.
             unsafe { below.push(is_met, _mm512_or_epi32(first, lanes())) };
@@ -316,36 +330,34 @@ fn joined(upper: __m512i, lower: __m512i) -> (__m512i, __m512i) {
 
 impl Group {
     /// Which boxes a ray meets, a bit each, and where it enters them.
-    #[inline]
-    #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
-    fn meets(&self, planes: &RayPlanes) -> (__mmask16, __m512) {
-        let splat = |value: f32| _mm512_set1_ps(value);
-        let rows = planes.near_rows.map(|row| row as usize);
-        let side = |row: usize| {
+    #[inline(always)]
+    fn meets(&self, Avx512(simd): Avx512, planes: &RayPlanes) -> (__mmask16, __m512) {
+        let side = |row: u32| {
             // SAFETY: near rows are 0 or 3, 1 or 4, 2 or 5, and far ones the others.
-            let sides = unsafe { self.0.get_unchecked(row) };
-            // SAFETY: sixteen floats on a boundary of 64 bytes.
-            unsafe { _mm512_load_ps(sides.as_ptr()) }
+            Single16::load(simd, unsafe { self.0.get_unchecked(row as usize) })
         };
-        let enter = |axis: usize| {
-            let (inverse, near) = (splat(planes.inverse[axis]), splat(planes.near[axis]));
-            _mm512_fmadd_ps(side(rows[axis]), inverse, near)
+        let [x, y, z] = planes.near_rows;
+        let near = Lane3 {
+            x: side(x),
+            y: side(y),
+            z: side(z),
         };
-        let leave = |axis: usize| {
-            let row = 2 * axis + 3 - rows[axis];
-            let (inverse, far) = (splat(planes.inverse[axis]), splat(planes.far[axis]));
-            _mm512_fmadd_ps(side(row), inverse, far)
+        let far = Lane3 {
+            x: side(3 - x),
+            y: side(5 - y),
+            z: side(7 - z),
         };
-        let enters = _mm512_max_ps(
-            _mm512_max_ps(enter(0), enter(1)),
-            _mm512_max_ps(enter(2), _mm512_setzero_ps()),
-        );
-        let leaves = _mm512_min_ps(
-            _mm512_min_ps(leave(0), leave(1)),
-            _mm512_min_ps(leave(2), splat(planes.end)),
-        );
-        let is_met = _mm512_cmp_ps_mask::<_CMP_LE_OQ>(enters, leaves);
-        (is_met, enters)
+        let boxes = Boxes {
+            inverse: Single16::splat3(simd, planes.inverse),
+            near: Single16::splat3(simd, planes.near),
+            far: Single16::splat3(simd, planes.far),
+            end: Single16::splat(simd, planes.end),
+        };
+        let (enter, leave) = boxes.enter_and_leave(near, far);
+        (
+            enter.simd_le(leave).to_bitmask() as __mmask16,
+            enter.0.into(),
+        )
     }
 }
 

@@ -13,8 +13,9 @@ use spherule_kernel::accel::node::Node;
 use spherule_kernel::accel::slabs::Slabs;
 use spherule_kernel::{Hit, Ray};
 
+use super::avx2::Avx2;
 use super::avx512::Avx512;
-use super::boxes_avx2::Avx2;
+use super::boxes::Planes;
 use super::search::{Query, Resting, Search};
 use super::wide::Wide;
 use crate::cpu::InstructionSet;
@@ -78,6 +79,8 @@ pub(super) fn trace<const ANY: bool, S: Resting + ?Sized>(
     }
 }
 
+// All features that `fearless_simd` compiles an instruction set for; otherwise nothing of it is
+// inlined.
 macro_rules! with_features {
     ($one:ident, $all:ident, $features:literal) => {
         #[target_feature(enable = $features)]
@@ -109,12 +112,12 @@ macro_rules! with_features {
 with_features!(
     one_with_avx2,
     all_with_avx2,
-    "avx2,fma,bmi1,bmi2,lzcnt,popcnt"
+    "avx2,bmi1,bmi2,cmpxchg16b,f16c,fma,fxsr,lzcnt,movbe,popcnt,xsave"
 );
 with_features!(
     one_with_avx512,
     all_with_avx512,
-    "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt"
+    "adx,aes,avx512bitalg,avx512bw,avx512cd,avx512dq,avx512f,avx512ifma,avx512vbmi,avx512vbmi2,avx512vl,avx512vnni,avx512vpopcntdq,bmi1,bmi2,cmpxchg16b,fma,fxsr,gfni,lzcnt,movbe,pclmulqdq,popcnt,rdrand,rdseed,sha,vaes,vpclmulqdq,xsave,xsavec,xsaveopt,xsaves"
 );
 
 #[inline(always)]
@@ -212,7 +215,7 @@ impl Stack {
 struct Walk<W: Wide> {
     wide: W,
     search: Search,
-    planes: W::Planes,
+    planes: Planes<W::Simd>,
     /// The start of the ray's interval, from which the planes measure.
     start: f32,
     unit: f32,
@@ -231,7 +234,7 @@ impl<W: Wide> Walk<W> {
         let mut walk = Self {
             wide,
             search: query.search(ray),
-            planes: wide.planes(&slabs),
+            planes: Planes::of(wide.simd(), &slabs),
             start: slabs.start,
             unit: slabs.unit,
             last_key: 0,
@@ -246,7 +249,7 @@ impl<W: Wide> Walk<W> {
     #[inline(always)]
     fn end_at(&mut self, t: f32) {
         let end = Slabs::widened_end(t * self.unit - self.start);
-        self.wide.end_at(&mut self.planes, end);
+        self.planes.end_at(end);
         // A ray that ends before it starts meets no boxes.
         self.last_key = (end.max(0.0).to_bits() | 7).cast_signed();
     }
@@ -268,7 +271,7 @@ impl<W: Wide> Walk<W> {
                 .test_all::<ANY, S>(&mut self.search, spheres, node)
         {
             // Even a single box goes through the stack: a processor mispredicts how many are met.
-            let (met, near) = self.wide.meets(&self.planes, node);
+            let (met, near) = self.planes.meets(node);
             let keys = self.wide.keys(met, near);
             stack.put(self.wide, self.height, keys, self.node);
             self.height += met.count_ones() as usize;

@@ -1,29 +1,26 @@
-//! [`Wide`]: how all boxes of a node are tested at once, for any instruction set.
+//! [`Wide`]: what the walk needs of an instruction set.
 
-use std::arch::x86_64::{__m256, __m256i};
+use std::arch::x86_64::__m256i;
 
+use fearless_simd::{Simd, f32x8, x86};
 use spherule_kernel::accel::node::Node;
-use spherule_kernel::accel::slabs::Slabs;
 
+use super::avx2::Avx2;
+use super::avx512::Avx512;
 use super::search::{Resting, Search};
+use super::sort::{keys_with_avx2, keys_with_avx512};
 
-/// Tests of boxes and spheres with an instruction set. A value is the proof that the machine has
-/// it.
+/// Sorting of boxes and tests of spheres with an instruction set. A value is the proof that the
+/// machine has it.
 pub(super) trait Wide: Copy {
-    /// The part of a ray that stays the same from node to node.
-    type Planes;
+    /// The vectors in which boxes are tested.
+    type Simd: Simd;
 
-    fn planes(self, slabs: &Slabs) -> Self::Planes;
-
-    /// Sets the end of the ray, as [`Slabs::widened_end`] returns it.
-    fn end_at(self, planes: &mut Self::Planes, end: f32);
-
-    /// Which of a node's boxes the ray may meet, a bit each, and where it enters them.
-    fn meets(self, planes: &Self::Planes, node: &Node) -> (u32, __m256);
+    fn simd(self) -> Self::Simd;
 
     /// The keys of the boxes that are met, as [`Stack`](super::walk) stores them, the largest
     /// first; then negative ones.
-    fn keys(self, met: u32, near: __m256) -> __m256i;
+    fn keys(self, met: u32, near: f32x8<Self::Simd>) -> __m256i;
 
     /// Tests the spheres of a node without nodes as children, if that is better than testing its
     /// boxes. Returns whether it did.
@@ -35,42 +32,57 @@ pub(super) trait Wide: Copy {
     ) -> bool;
 }
 
-/// Sorts eight keys, the largest first, by Batcher's bitonic network: pairs, fours, all eight.
-/// `exchange!(keys, others, lanes)` keeps the smaller of two keys in the lanes of the mask, and the
-/// larger one in the others.
-macro_rules! sort_descending {
-    ($keys:ident, $exchange:ident) => {{
-        let reversed = _mm256_setr_epi32(7, 6, 5, 4, 3, 2, 1, 0);
-        let keys = $exchange!(
-            $keys,
-            _mm256_shuffle_epi32::<0b10_11_00_01>($keys),
-            0b1010_1010
-        );
-        let keys = $exchange!(
-            keys,
-            _mm256_shuffle_epi32::<0b00_01_10_11>(keys),
-            0b1100_1100
-        );
-        let keys = $exchange!(
-            keys,
-            _mm256_shuffle_epi32::<0b10_11_00_01>(keys),
-            0b1010_1010
-        );
-        let keys = $exchange!(
-            keys,
-            _mm256_permutevar8x32_epi32(keys, reversed),
-            0b1111_0000
-        );
-        let keys = $exchange!(
-            keys,
-            _mm256_shuffle_epi32::<0b01_00_11_10>(keys),
-            0b1100_1100
-        );
-        $exchange!(
-            keys,
-            _mm256_shuffle_epi32::<0b10_11_00_01>(keys),
-            0b1010_1010
-        )
-    }};
+impl Wide for Avx2 {
+    type Simd = x86::Avx2;
+
+    #[inline(always)]
+    fn simd(self) -> x86::Avx2 {
+        self.0
+    }
+
+    #[inline(always)]
+    fn keys(self, met: u32, near: f32x8<x86::Avx2>) -> __m256i {
+        // SAFETY: the machine has AVX2.
+        unsafe { keys_with_avx2(met, near.into()) }
+    }
+
+    #[inline(always)]
+    fn test_all<const ANY: bool, S: Resting + ?Sized>(
+        self,
+        _: &mut Search,
+        _: &S,
+        _: &Node,
+    ) -> bool {
+        false
+    }
 }
-pub(super) use sort_descending;
+
+impl Wide for Avx512 {
+    type Simd = x86::Avx512;
+
+    #[inline(always)]
+    fn simd(self) -> x86::Avx512 {
+        self.0
+    }
+
+    #[inline(always)]
+    fn keys(self, met: u32, near: f32x8<x86::Avx512>) -> __m256i {
+        // SAFETY: the machine has AVX-512.
+        unsafe { keys_with_avx512(met, near.into()) }
+    }
+
+    #[inline(always)]
+    fn test_all<const ANY: bool, S: Resting + ?Sized>(
+        self,
+        search: &mut Search,
+        spheres: &S,
+        node: &Node,
+    ) -> bool {
+        let Some(spheres) = spheres.at_rest() else {
+            return false;
+        };
+        let (first, count) = node.all_spheres();
+        search.test_wide::<ANY>(self, spheres, first, count);
+        true
+    }
+}

@@ -14,12 +14,12 @@ use crate::memory;
 /// Memory that is reserved until an image is written, so that an image that took long is not lost
 /// if there is none.
 #[derive(Debug)]
-pub struct Room {
+pub struct ReservedMemory {
     /// Allocated but never touched; freed when the image is written.
     _bytes: Vec<u8>,
 }
 
-impl Room {
+impl ReservedMemory {
     /// Reserves memory to write an image of `width` × `height` pixels, with or without opacities.
     ///
     /// # Errors
@@ -51,7 +51,7 @@ impl Image {
         let output = Output::image(path.as_ref())?;
         let has_alpha = self.has_alpha();
         let format = Format::of(output.path())?;
-        let room = Room::reserve(format, self.width(), self.height(), has_alpha)?;
+        let room = ReservedMemory::reserve(format, self.width(), self.height(), has_alpha)?;
         self.save_to(&output, room)
     }
 
@@ -61,7 +61,7 @@ impl Image {
     /// # Errors
     ///
     /// As [`Image::save`].
-    pub(crate) fn save_to(&self, output: &Output, room: Room) -> Result<()> {
+    pub(crate) fn save_to(&self, output: &Output, room: ReservedMemory) -> Result<()> {
         let format = Format::of(output.path())?;
         // From here on the memory is for the encoder.
         drop(room);

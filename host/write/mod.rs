@@ -33,7 +33,7 @@ use std::path::Path;
 #[cfg(feature = "cli")]
 pub use format::Format;
 #[cfg(feature = "cli")]
-pub use image::Room;
+pub use image::ReservedMemory;
 #[cfg(feature = "lab")]
 pub use output::Output;
 #[cfg(feature = "cli")]

@@ -180,6 +180,28 @@ impl<L: Lane> Lane3<L> {
         }
     }
 
+    /// The sum.
+    #[inline(always)]
+    #[must_use]
+    pub fn plus(self, other: Self) -> Self {
+        Self {
+            x: self.x + other.x,
+            y: self.y + other.y,
+            z: self.z + other.z,
+        }
+    }
+
+    /// Each coordinate times a number.
+    #[inline(always)]
+    #[must_use]
+    pub fn scaled(self, factor: L) -> Self {
+        Self {
+            x: self.x * factor,
+            y: self.y * factor,
+            z: self.z * factor,
+        }
+    }
+
     /// `self − other · factor`.
     #[inline(always)]
     #[must_use]
@@ -202,5 +224,12 @@ impl Lane3<f32> {
             y: vector.y,
             z: vector.z,
         }
+    }
+
+    /// The vector with these coordinates.
+    #[inline(always)]
+    #[must_use]
+    pub fn to_vec3(self) -> Vec3 {
+        Vec3::new(self.x, self.y, self.z)
     }
 }

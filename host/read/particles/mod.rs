@@ -1,5 +1,5 @@
-//! [`FORMATS`]: the formats of particle files. Extensions, error messages and help texts come from
-//! this list. Readers know nothing of a look.
+//! [`PARTICLE_FORMATS`]: the formats of particle files. Extensions, error messages and help texts
+//! come from this list. Readers know nothing of a look.
 
 mod atom;
 pub mod elements;
@@ -17,7 +17,7 @@ pub use atom::{Atom, WrongLine};
 
 /// A file format.
 #[derive(Clone, Copy, Debug)]
-pub struct Format {
+pub struct ParticleFormat {
     /// The format's name.
     pub name: &'static str,
     /// The extensions of its files, in lower case.
@@ -27,26 +27,26 @@ pub struct Format {
 }
 
 /// Every format.
-pub const FORMATS: [Format; 2] = [
-    Format {
+pub const PARTICLE_FORMATS: [ParticleFormat; 2] = [
+    ParticleFormat {
         name: "Protein Data Bank",
         extensions: &["pdb", "ent"],
         parse: pdb::parse,
     },
-    Format {
+    ParticleFormat {
         name: "XYZ",
         extensions: &["xyz", "extxyz"],
         parse: xyz::parse,
     },
 ];
 
-impl Format {
+impl ParticleFormat {
     /// The format that fits the file's name, if there is one: `c60.xyz`, `C60.XYZ` and `c60.xyz.gz`
     /// are XYZ.
     #[must_use]
     pub fn of(path: &Path) -> Option<&'static Self> {
         let found = extension(uncompressed(path));
-        FORMATS
+        PARTICLE_FORMATS
             .iter()
             .find(|format| format.extensions.contains(&found.as_str()))
     }
@@ -77,7 +77,7 @@ impl Format {
 /// The extensions of all formats, for messages: `.pdb, .ent, .xyz or .extxyz`.
 #[must_use]
 pub fn extensions() -> String {
-    let all: Vec<String> = FORMATS
+    let all: Vec<String> = PARTICLE_FORMATS
         .iter()
         .flat_map(|format| format.extensions)
         .map(|extension| format!(".{extension}"))
@@ -95,7 +95,7 @@ mod tests {
 
     #[test]
     fn files_are_told_by_their_names() {
-        let name = |path: &str| Format::of(Path::new(path)).map(|format| format.name);
+        let name = |path: &str| ParticleFormat::of(Path::new(path)).map(|format| format.name);
         assert_eq!(name("A.B.PDB"), Some("Protein Data Bank"));
         assert_eq!(name("x/1crn.ent.gz"), Some("Protein Data Bank"));
         assert_eq!(name("c60.extxyz"), Some("XYZ"));
@@ -116,7 +116,7 @@ mod tests {
 
     #[test]
     fn no_extension_is_of_two_formats() {
-        let mut all: Vec<&str> = FORMATS
+        let mut all: Vec<&str> = PARTICLE_FORMATS
             .iter()
             .flat_map(|it| it.extensions)
             .copied()

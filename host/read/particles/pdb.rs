@@ -36,7 +36,7 @@ pub fn parse(text: &str) -> Result<Vec<Atom>, WrongLine> {
     let text = text.trim_start_matches('\u{feff}');
     for (number, line) in text.lines().enumerate() {
         last_line = number;
-        let line = Columns(line.as_bytes());
+        let line = Record(line.as_bytes());
         match line.text(1, 6).trim_end() {
             "HEADER" => entry_id = line.text(63, 66),
             "ATOM" | "HETATM" => {
@@ -99,7 +99,7 @@ fn is_misplaced_atom(line: &[u8]) -> bool {
     })
 }
 
-fn position(line: &Columns<'_>, number: usize) -> Result<Vec3, WrongLine> {
+fn position(line: &Record<'_>, number: usize) -> Result<Vec3, WrongLine> {
     if line.0.len() < 54 {
         return Err(WrongLine::new(
             number,
@@ -137,7 +137,7 @@ fn position(line: &Columns<'_>, number: usize) -> Result<Vec3, WrongLine> {
 }
 
 /// The atom's element: from its own columns if the file has them, else from the atom's name.
-fn element(line: &Columns<'_>, entry_id: &str) -> Option<&'static Element> {
+fn element(line: &Record<'_>, entry_id: &str) -> Option<&'static Element> {
     // Before 1996 columns 73–80 held the entry's name and a line number.
     let is_old_layout = !entry_id.trim().is_empty() && line.text(73, 76) == entry_id;
     if !is_old_layout && let Some(element) = elements::by_symbol(line.text(77, 78).trim()) {
@@ -180,9 +180,9 @@ fn element(line: &Columns<'_>, entry_id: &str) -> Option<&'static Element> {
 
 /// A line addressed as in the format's description: columns count from one, both ends are
 /// inclusive, and columns beyond the end are blank.
-struct Columns<'a>(&'a [u8]);
+struct Record<'a>(&'a [u8]);
 
-impl<'a> Columns<'a> {
+impl<'a> Record<'a> {
     fn bytes(&self, from: usize, to: usize) -> &'a [u8] {
         let end = to.min(self.0.len());
         self.0.get(from - 1..end).unwrap_or_default()

@@ -7,7 +7,7 @@ use super::reader::Reader;
 use super::value::Value;
 use crate::error::{Error, Result};
 use crate::look;
-use crate::read::particles::{self, Format};
+use crate::read::particles::{self, ParticleFormat};
 use crate::scene::World;
 use crate::shown::shown;
 
@@ -21,7 +21,7 @@ impl Reader<'_> {
     pub(super) fn particles(&self, file: &Spanned<Value>) -> Result<World> {
         let name = self.text("file", file)?;
         let path = self.beside(name);
-        let Some(format) = Format::of(&path) else {
+        let Some(format) = ParticleFormat::of(&path) else {
             return Err(self
                 .wrong(
                     file,

@@ -20,7 +20,7 @@ use std::time::Instant;
 use rayon::prelude::*;
 use spherule_kernel::{Accumulator, Effects, Hit, Pixel, Shading};
 
-use super::room::memory_for;
+use super::image_memory::memory_for;
 use super::{Progress, Rendered, Settings, Timings};
 use crate::device::Device;
 use crate::error::Result;

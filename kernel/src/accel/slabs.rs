@@ -34,6 +34,7 @@ use super::node::{Extent, Node};
 use crate::arithmetic::U;
 use crate::cull::discriminant::power_of_two_under;
 use crate::gpu::instructions::{larger, smaller};
+use crate::lane::{Lane, Lane3};
 use crate::ray::Ray;
 
 /// A ray, prepared for testing it against one box after another.
@@ -96,9 +97,9 @@ impl Slabs {
     #[inline]
     pub(super) fn meets(&self, corner: Vec3, sides: &[UVec4; 6], end: f32) -> u32 {
         let boxes = Boxes {
-            inverse: self.inverse,
-            near: corner * self.inverse + self.near,
-            far: corner * self.inverse + self.far,
+            inverse: Lane3::of(self.inverse),
+            near: Lane3::of(corner * self.inverse + self.near),
+            far: Lane3::of(corner * self.inverse + self.far),
             end: Self::widened_end(end),
         };
         let row = |row: u32| {
@@ -142,33 +143,76 @@ impl Slabs {
 /// Bit 4c of each child c.
 pub(super) const FIRST_OF_FOUR: u32 = 0x1111_1111;
 
-/// Turns the sides of boxes into parameters along a ray: v · inverse + near or far, for a side v.
-#[derive(Clone, Copy)]
-struct Boxes {
-    inverse: Vec3,
-    near: Vec3,
-    far: Vec3,
-    end: f32,
+/// Numbers that boxes are tested in: one box at a time, or several side by side.
+pub trait BoxLane: Lane {
+    /// The largest of three numbers and zero. None may be NaN.
+    fn largest_or_zero(x: Self, y: Self, z: Self) -> Self;
+
+    /// The smallest of four numbers; if some are below zero, any of those. None may be NaN.
+    fn smallest(x: Self, y: Self, z: Self, end: Self) -> Self;
 }
 
-impl Boxes {
+/// The bits of floats that are not negative are ordered as the floats are, and a GPU compares three
+/// integers at once. Negative floats are negative integers: they never win against zero where the
+/// largest is taken, and where the smallest is taken any of them will do.
+impl BoxLane for f32 {
+    #[inline(always)]
+    fn largest_or_zero(x: Self, y: Self, z: Self) -> Self {
+        let bits = |x: Self| x.to_bits() as i32;
+        Self::from_bits(larger(larger(larger(bits(x), bits(y)), bits(z)), 0) as u32)
+    }
+
+    #[inline(always)]
+    fn smallest(x: Self, y: Self, z: Self, end: Self) -> Self {
+        let bits = |x: Self| x.to_bits() as i32;
+        Self::from_bits(smaller(smaller(smaller(bits(x), bits(y)), bits(z)), bits(end)) as u32)
+    }
+}
+
+/// A ray in the coordinates of boxes: a side at v has the parameter v · `inverse` + `near` or
+/// `far`.
+#[derive(Clone, Copy, Debug)]
+pub struct Boxes<L> {
+    /// One over the direction.
+    pub inverse: Lane3<L>,
+    /// What is added for near planes.
+    pub near: Lane3<L>,
+    /// What is added for far planes.
+    pub far: Lane3<L>,
+    /// The ray's end, as [`Slabs::widened_end`] returns it.
+    pub end: L,
+}
+
+impl<L: BoxLane> Boxes<L> {
+    /// Where the ray enters boxes and where it leaves them, from their near and far sides. It
+    /// misses those that it leaves before it enters.
+    #[inline(always)]
+    #[must_use]
+    pub fn enter_and_leave(&self, near: Lane3<L>, far: Lane3<L>) -> (L, L) {
+        let i = self.inverse;
+        (
+            L::largest_or_zero(
+                near.x.mul_add_rough(i.x, self.near.x),
+                near.y.mul_add_rough(i.y, self.near.y),
+                near.z.mul_add_rough(i.z, self.near.z),
+            ),
+            L::smallest(
+                far.x.mul_add_rough(i.x, self.far.x),
+                far.y.mul_add_rough(i.y, self.far.y),
+                far.z.mul_add_rough(i.z, self.far.z),
+                self.end,
+            ),
+        )
+    }
+}
+
+impl Boxes<f32> {
     /// The length of the ray's interval in a box, as the bits of a float; negative if the ray
     /// misses the box.
     #[inline]
-    fn gap(&self, near: Vec3, far: Vec3) -> u32 {
-        let near = near * self.inverse + self.near;
-        let far = far * self.inverse + self.far;
-        // The bits of floats that are not negative are ordered as the floats are, and a GPU
-        // compares three integers at once. Negative floats are negative integers: they never win
-        // against zero where the largest is taken, and where the smallest is taken any of them
-        // makes the gap negative.
-        let bits = |x: f32| x.to_bits() as i32;
-        let first = larger(larger(larger(bits(near.x), bits(near.y)), bits(near.z)), 0);
-        let last = smaller(
-            smaller(smaller(bits(far.x), bits(far.y)), bits(far.z)),
-            bits(self.end),
-        );
-        (f32::from_bits(last as u32) - f32::from_bits(first as u32)).to_bits()
+    fn gap(&self, near: Lane3<f32>, far: Lane3<f32>) -> u32 {
+        let (enter, leave) = self.enter_and_leave(near, far);
+        (leave - enter).to_bits()
     }
 }
 
@@ -184,13 +228,21 @@ fn by_word(x: UVec4, y: UVec4, z: UVec4) -> [[u32; 3]; 4] {
 }
 
 #[inline]
-fn lower([x, y, z]: [u32; 3]) -> Vec3 {
-    Vec3::new(Node::lower(x), Node::lower(y), Node::lower(z))
+fn lower([x, y, z]: [u32; 3]) -> Lane3<f32> {
+    Lane3 {
+        x: Node::lower(x),
+        y: Node::lower(y),
+        z: Node::lower(z),
+    }
 }
 
 #[inline]
-fn upper([x, y, z]: [u32; 3]) -> Vec3 {
-    Vec3::new(Node::upper(x), Node::upper(y), Node::upper(z))
+fn upper([x, y, z]: [u32; 3]) -> Lane3<f32> {
+    Lane3 {
+        x: Node::upper(x),
+        y: Node::upper(y),
+        z: Node::upper(z),
+    }
 }
 
 /// Loads all four words at once; compilers for GPUs do not merge four loads.

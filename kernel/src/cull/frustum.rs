@@ -25,11 +25,9 @@
 //! So 256u (o·o + r²) is added to r², and no rung's hit is lost.
 
 use glam::{Vec2, Vec3, Vec4};
-// On the CPU, std has `f32::sqrt`.
-#[cfg(target_arch = "spirv")]
-use spirv_std::num_traits::Float as _;
 
 use crate::camera::Camera;
+use crate::lane::{Lane, Lane3};
 use crate::sphere::Sphere;
 
 /// 256u.
@@ -65,11 +63,15 @@ impl Plane {
         };
         let end = if is_high { high } else { low };
         let offset = across * if is_across { end.x } else { end.y };
-        Self::of(
-            camera.forward,
-            offset,
-            axis,
-            if is_high { -across } else { across },
+        let towards = if is_high { -across } else { across };
+        Self(
+            inward_normal(
+                Lane3::of(camera.forward),
+                Lane3::of(offset),
+                Lane3::of(axis),
+                Lane3::of(towards),
+            )
+            .to_vec3(),
         )
     }
 
@@ -86,27 +88,37 @@ impl Plane {
     pub fn from_vec4(vector: Vec4) -> Self {
         Self(vector.truncate())
     }
+}
 
-    /// The plane along the ray `forward + offset` and an axis of the film; its inside is on the
-    /// side of `towards`.
-    #[inline]
-    fn of(forward: Vec3, offset: Vec3, axis: Vec3, towards: Vec3) -> Self {
-        let ray = forward + offset;
-        let normal = ray.cross(axis);
-        let (squared, inward) = (normal.dot(normal), normal.dot(towards));
-        let is_long = ray.dot(ray) > 0.25 * (forward.dot(forward) + offset.dot(offset));
-        let is_wide = squared > 0.25 * (ray.dot(ray) * axis.dot(axis));
-        let is_sure = inward * inward > 0.25 * (squared * towards.dot(towards));
-        if is_long & is_wide & is_sure {
-            let length = if inward < 0.0 {
-                -squared.sqrt()
-            } else {
-                squared.sqrt()
-            };
-            Self(normal * (1.0 / length))
-        } else {
-            Self(Vec3::ZERO)
-        }
+/// The inward normal, of unit length, of the plane along the ray `forward + offset` and an axis of
+/// the film; its inside is on the side of `towards`. It is zero where rounding in 32-bit floats
+/// might decide which way it points. In lanes.
+#[inline(always)]
+#[must_use]
+pub fn inward_normal<L: Lane>(
+    forward: Lane3<L>,
+    offset: Lane3<L>,
+    axis: Lane3<L>,
+    towards: Lane3<L>,
+) -> Lane3<L> {
+    let ray = forward.plus(offset);
+    let normal = ray.cross(axis);
+    let (squared, inward) = (normal.dot(normal), normal.dot(towards));
+    let (quarter, zero) = (squared.splat(0.25), squared.splat(0.0));
+    let is_long = ray
+        .dot(ray)
+        .simd_gt(quarter * (forward.dot(forward) + offset.dot(offset)));
+    let is_wide = squared.simd_gt(quarter * (ray.dot(ray) * axis.dot(axis)));
+    let is_sure = (inward * inward).simd_gt(quarter * (squared * towards.dot(towards)));
+    let root = squared.sqrt();
+    let length = L::select(inward.simd_lt(zero), -root, root);
+    let is_usable = is_long & is_wide & is_sure;
+    let scale = squared.splat(1.0) / length;
+    let of = |component: L| L::select(is_usable, component * scale, zero);
+    Lane3 {
+        x: of(normal.x),
+        y: of(normal.y),
+        z: of(normal.z),
     }
 }
 

@@ -4,6 +4,7 @@
 use glam::Vec3;
 
 use crate::hit::Hit;
+use crate::lane::Lane;
 use crate::ray::Ray;
 use crate::sphere::Sphere;
 
@@ -30,10 +31,15 @@ pub trait Precision {
 #[inline]
 #[must_use]
 pub fn choose_root(near: f32, far: f32, ray: &Ray) -> f32 {
-    let t = if near >= ray.t_min { near } else { far };
-    if (t >= ray.t_min) & (t < ray.t_max) {
-        t
-    } else {
-        Hit::NONE_T
-    }
+    let (t, is_within) = root_within(near, far, ray.t_min, ray.t_max);
+    if is_within { t } else { Hit::NONE_T }
+}
+
+/// The smaller of two roots that is `t_min` or more, in lanes, and whether it lies in the interval
+/// from `t_min` up to `t_max`, without `t_max`.
+#[inline(always)]
+#[must_use]
+pub fn root_within<L: Lane>(near: L, far: L, t_min: L, t_max: L) -> (L, L::Mask) {
+    let t = L::select(near.simd_ge(t_min), near, far);
+    (t, t.simd_ge(t_min) & t.simd_lt(t_max))
 }

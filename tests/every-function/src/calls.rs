@@ -213,8 +213,8 @@ pub const CALLS: &[Call] = &[
     Call::new("spherule::accuracy::measure::Escalation::of", |s| {
         seen(spherule::accuracy::measure::Escalation::of(&s.many()[..]))
     }),
-    Call::new("spherule::accuracy::measure::Measured::ulp_at", |s| {
-        seen(spherule::accuracy::measure::Measured::ulp_at(
+    Call::new("spherule::accuracy::measure::RungErrors::ulp_at", |s| {
+        seen(spherule::accuracy::measure::RungErrors::ulp_at(
             &s.draw(),
             s.draw(),
         ))
@@ -816,14 +816,14 @@ pub const CALLS: &[Call] = &[
     Call::new("spherule::read::is_scene", |s| {
         seen(spherule::read::is_scene(&s.path()))
     }),
-    Call::new("spherule::read::particles::Format::load", |s| {
-        seen(spherule::read::particles::Format::load(
+    Call::new("spherule::read::particles::ParticleFormat::load", |s| {
+        seen(spherule::read::particles::ParticleFormat::load(
             &s.draw(),
             &s.path(),
         ))
     }),
-    Call::new("spherule::read::particles::Format::of", |s| {
-        seen(spherule::read::particles::Format::of(&s.path()))
+    Call::new("spherule::read::particles::ParticleFormat::of", |s| {
+        seen(spherule::read::particles::ParticleFormat::of(&s.path()))
     }),
     Call::new("spherule::read::particles::elements::by_number", |s| {
         seen(spherule::read::particles::elements::by_number(s.draw()))
@@ -2660,9 +2660,9 @@ impl Odd for spherule::accuracy::measure::Escalation {
     }
 }
 
-impl Odd for spherule::accuracy::measure::Measured {
+impl Odd for spherule::accuracy::measure::RungErrors {
     fn odd(s: &mut Source) -> Self {
-        spherule::accuracy::measure::Measured {
+        spherule::accuracy::measure::RungErrors {
             rays: Odd::odd(s),
             hits: Odd::odd(s),
             false_hits: Odd::odd(s),

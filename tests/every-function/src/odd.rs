@@ -10,10 +10,10 @@ use std::time::Duration;
 
 use spherule::accel::{self, Acceleration, BuiltTree, Nodes};
 use spherule::accuracy::cases::{Case, catalogue};
-use spherule::accuracy::measure::Measured;
+use spherule::accuracy::measure::RungErrors;
 use spherule::accuracy::oracle::Intersection;
 use spherule::accuracy::price::Price;
-use spherule::accuracy::report::{Family, Row};
+use spherule::accuracy::report::{FamilyResults, Row};
 use spherule::accuracy::scene_cases::{SCENE_CASES, SceneCase};
 use spherule::bench::measure::Plan;
 use spherule::bench::scenes::BenchScene;
@@ -34,7 +34,7 @@ use spherule::kernel::{
 };
 use spherule::random::Random;
 use spherule::read::particles::elements::{Element, UNKNOWN, by_number};
-use spherule::read::particles::{FORMATS, Format};
+use spherule::read::particles::{PARTICLE_FORMATS, ParticleFormat};
 use spherule::render::pace::Pace;
 use spherule::render::{EffectChoice, Settings};
 use spherule::render::{cpu, gpu, paths};
@@ -428,9 +428,9 @@ impl Odd for &'static str {
     }
 }
 
-impl Odd for Format {
+impl Odd for ParticleFormat {
     fn odd(s: &mut Source) -> Self {
-        FORMATS[s.below(FORMATS.len())]
+        PARTICLE_FORMATS[s.below(PARTICLE_FORMATS.len())]
     }
 }
 
@@ -1195,7 +1195,7 @@ impl OddPrepared {
 }
 
 /// A family's name, its note, and its rows.
-type OddFamily = (String, String, Vec<(Price, Measured)>);
+type OddFamily = (String, String, Vec<(Price, RungErrors)>);
 
 /// Owns what the report's families borrow.
 #[derive(Debug)]
@@ -1214,10 +1214,10 @@ impl Odd for OddFamilies {
 
 impl OddFamilies {
     /// The families.
-    pub fn get(&self) -> Vec<Family<'_>> {
+    pub fn get(&self) -> Vec<FamilyResults<'_>> {
         self.0
             .iter()
-            .map(|(name, note, rows)| Family {
+            .map(|(name, note, rows)| FamilyResults {
                 name,
                 note: note.clone(),
                 rungs: rows

@@ -213,7 +213,7 @@ const BY_HAND: &[&str] = &[
     "spherule::render::paths::prepare::Prepared",
     "spherule::scene::Scene",
     "spherule::device::gpu::GpuOptions",
-    "spherule::read::particles::Format",
+    "spherule::read::particles::ParticleFormat",
     "spherule::render::settings::Settings",
     "spherule::accel::tree::Nodes",
     "spherule::accel::tree::BuiltTree",
@@ -240,7 +240,7 @@ const BY_HAND: &[&str] = &[
 /// Types that `src/odd.rs` needs and no function takes.
 const ALSO: &[&str] = &[
     "spherule::accuracy::frames::Frame",
-    "spherule::accuracy::measure::Measured",
+    "spherule::accuracy::measure::RungErrors",
     "spherule::accuracy::price::Price",
     "spherule::accuracy::samples::Step",
     "spherule_kernel::film::PathLaunch",
