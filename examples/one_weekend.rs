@@ -57,6 +57,8 @@ fn main() {
         Some(metal(Vec3::new(0.7, 0.6, 0.5), 0.0)),
     );
     let mut count = 0;
+    // Glass that overlaps would call for more of the pipeline (`nested-glass`).
+    let mut balls = vec![(Vec3::Y, 1.0)];
     for a in -11..11 {
         for b in -11..11 {
             let center = Vec3::new(
@@ -77,8 +79,9 @@ fn main() {
                 add(center, 0.2, &name, Some(diffuse(color)));
             } else if choice < 0.95 {
                 add(center, 0.2, &name, Some(metal(shine, roughness)));
-            } else {
+            } else if balls.iter().all(|(c, r)| center.distance(*c) >= 0.2 + r) {
                 add(center, 0.2, "glass", None);
+                balls.push((center, 0.2));
             }
         }
     }
@@ -87,6 +90,6 @@ fn main() {
          # Written by `cargo run --release --example one_weekend`.\n\n\
          [image]\nwidth = 1200\nheight = 675\nsamples = 500\nmax_bounces = 50\n\n\
          [camera]\neye = [13, 2, 3]\ntarget = [0, 0, 0]\nvertical_fov = 20\naperture = 0.1047\nfocus_distance = 10\n\n\
-         [sky]\nhorizon = [1, 1, 1]\nzenith = [0.5, 0.7, 1]\n{materials}{spheres}"
+         [sky]\nhorizon = [0.75, 0.85, 1]\nzenith = [0.5, 0.7, 1]\n{materials}{spheres}"
     );
 }

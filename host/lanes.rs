@@ -252,14 +252,13 @@ macro_rules! single {
 
         impl<S: Simd> BoxLane for $single<S> {
             #[inline(always)]
-            fn largest_or_zero(x: Self, y: Self, z: Self) -> Self {
-                let zero = x.splat(0.0);
-                Self(x.0.max(y.0).max(z.0.max(zero.0)))
+            fn larger(self, other: Self) -> Self {
+                Self(self.0.max(other.0))
             }
 
             #[inline(always)]
-            fn smallest(x: Self, y: Self, z: Self, end: Self) -> Self {
-                Self(x.0.min(y.0).min(z.0.min(end.0)))
+            fn smaller(self, other: Self) -> Self {
+                Self(self.0.min(other.0))
             }
         }
     };

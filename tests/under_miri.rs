@@ -127,6 +127,7 @@ fn images_of_every_kind_are_rendered() {
             size: 2.0,
             irradiance: Vec3::ONE,
         }),
+        rotation: 0.0,
         image: None,
     });
     lit.lights.push(PointLight {

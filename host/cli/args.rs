@@ -84,7 +84,8 @@ pub(super) struct RenderArguments {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_SAMPLES)))]
     pub(super) samples: Option<u32>,
 
-    /// How often light is reflected or scattered on its way, at most [default: the scene's, or 8]
+    /// How often light bounces between surfaces before it reaches the one that is seen, at most
+    /// [default: the scene's, or 32]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=i64::from(MAX_BOUNCES)))]
     pub(super) max_bounces: Option<u32>,
 

@@ -2,7 +2,8 @@
 
 use glam::Vec3;
 use spherule_kernel::material::microfacet::SMOOTHEST;
-use spherule_kernel::{Effects, Material};
+use spherule_kernel::surface::Surface;
+use spherule_kernel::{Effects, Material, Sphere};
 
 use super::surroundings::Sun;
 use super::{Sampling, Scene};
@@ -35,18 +36,23 @@ const RANDOM: Effects = Effects::SOFT_SHADOWS
 /// What in a scene calls for an effect, if anything does.
 type CalledBy = fn(&Asked<'_>) -> Option<String>;
 
-/// What calls for each effect, in the order of [`Effects`]. Antialiasing and the headlamp are not
-/// among them: what calls for those are the others.
+/// What calls for each effect, in the order of [`Effects`]. Antialiasing, the headlamp and large
+/// spheres are not among them: what calls for those are the others.
 const CALLS: &[(Effects, CalledBy)] = &[
     (Effects::HARD_SHADOWS, |asked| {
         let lights = asked.scene.lights.len();
-        match asked.sun() {
+        let by = match asked.sun() {
             _ if !asked.seeks_light() => None,
             _ if lights > 0 => Some(format!("{lights} [[light]] without a radius")),
             None => None,
             Some(sun) if sun.size > 0.0 => None,
             Some(_) => Some("[sky] sun_size = 0".into()),
-        }
+        };
+        // A path meets no light without extent behind glass.
+        let shadow = asked
+            .glass
+            .map_or("", |_| "; behind glass it gives no light");
+        by.map(|by| by + shadow)
     }),
     (Effects::SOFT_SHADOWS, |asked| {
         match (asked.glow, asked.sun()) {
@@ -83,15 +89,19 @@ const CALLS: &[(Effects, CalledBy)] = &[
     (Effects::INTERREFLECTION, |asked| {
         let material = asked.material(asked.diffuse?);
         let sampling = &asked.scene.sampling;
-        let bounces = sampling.ambient_occlusion.is_none()
-            && sampling.max_bounces > 0
-            && asked.scene.has_light();
-        bounces.then(|| {
-            format!(
-                "{material} is of kind diffuse, and light may bounce {}",
-                count_of(sampling.max_bounces as usize, "time")
-            )
-        })
+        if sampling.ambient_occlusion.is_some() || !asked.scene.has_light() {
+            return None;
+        }
+        if sampling.max_bounces > 0 {
+            let times = count_of(sampling.max_bounces as usize, "time");
+            return Some(format!(
+                "{material} is of kind diffuse, and light may bounce {times}"
+            ));
+        }
+        // A path meets the sky only where it goes on.
+        let sky = asked.scene.sky.as_ref()?;
+        sky.is_plain_light()
+            .then(|| format!("the sky shines on {material}"))
     }),
     (Effects::DEFOCUS, |asked| {
         let aperture = asked.scene.lens.aperture;
@@ -130,7 +140,22 @@ const CALLS: &[(Effects, CalledBy)] = &[
         let material = asked.material(asked.plastic?);
         Some(format!("{material} is of kind plastic"))
     }),
+    (Effects::NESTED_GLASS, |asked| {
+        asked.glass?;
+        let scene = asked.scene;
+        let eye = scene.view_or_framed().eye;
+        if !scene.world.glass_around(eye).is_empty() {
+            return Some("the eye is in glass".into());
+        }
+        let (first, second) = scene.world.overlapping_glass()?;
+        Some(format!(
+            "the glass of spheres {first} and {second} overlaps"
+        ))
+    }),
 ];
+
+/// The largest share of a scene's smallest length by which points may be beside their spheres.
+const VISIBLE: f32 = 1.0 / 256.0;
 
 /// A scene, and the first material of each kind that a sphere has.
 struct Asked<'a> {
@@ -200,6 +225,7 @@ impl Scene {
         };
         called.extend(self.antialiasing(all(&called)));
         called.extend(self.headlamp(all(&called)));
+        called.extend(self.large_spheres(all(&called)));
         called.sort_by_key(|called| called.effect.to_bits());
         called
     }
@@ -227,6 +253,19 @@ impl Scene {
                 Effects::HEADLAMP,
                 "the scene has no light: no [[light]], no [sky], nothing that glows, no ambient occlusion".into(),
             )
+        })
+    }
+
+    /// What large spheres call for, if light paths with `others` leave them.
+    fn large_spheres(&self, others: Effects) -> Option<Called> {
+        let (largest, smallest) = (self.largest_size(), self.smallest_length());
+        // How far `Surface::at` may put a point beside the sphere.
+        let is_off = Surface::error(largest) > smallest * VISIBLE;
+        (is_off && !others.is_empty()).then(|| {
+            let by = format!(
+                "a sphere reaches {largest:.1e} from the origin, and the smallest length is {smallest:.1e}"
+            );
+            of(Effects::LARGE_SPHERES, by)
         })
     }
 
@@ -259,15 +298,37 @@ impl Scene {
         effects.any(RANDOM) || effects.any(Effects::HARD_SHADOWS) && hard > 1
     }
 
-    /// Whether anything shines other than the lamp at the eye. A sky shines by way of a bounce.
+    /// Whether anything shines other than the lamp at the eye.
     fn has_light(&self) -> bool {
         !self.lights.is_empty()
-            || self
-                .sky
-                .as_ref()
-                .is_some_and(|sky| sky.sun.is_some() || self.sampling.max_bounces > 0)
+            || self.sky.is_some()
             || self.sampling.ambient_occlusion.is_some()
             || self.first_of(Material::EMISSIVE).is_some()
+    }
+
+    /// The largest of each sphere's radius plus the largest of its centre's coordinates.
+    fn largest_size(&self) -> f32 {
+        let size = |sphere: &Sphere| sphere.center().abs().max_element() + sphere.radius().abs();
+        self.world.spheres.iter().map(size).fold(0.0, f32::max)
+    }
+
+    /// The smallest length of which an image may show something: the smallest radius, or the
+    /// distance from the eye to what it looks at or to a light.
+    fn smallest_length(&self) -> f32 {
+        let view = self.view_or_framed();
+        let radii = self
+            .world
+            .spheres
+            .iter()
+            .map(|sphere| sphere.radius().abs());
+        let lights = self
+            .lights
+            .iter()
+            .map(|light| light.position.distance(view.eye));
+        radii
+            .chain(lights)
+            .filter(|length| *length > 0.0)
+            .fold(view.eye.distance(view.target), f32::min)
     }
 
     fn first_of(&self, kind: u32) -> Option<usize> {
@@ -306,8 +367,10 @@ mod tests {
     fn every_effect_is_called_for_by_an_entry_in_its_place() {
         let listed: Vec<Effects> = CALLS.iter().map(|(effect, _)| *effect).collect();
         let named = Effects::NAMED.iter().map(|(effect, _)| *effect);
-        let sampling = Effects::ANTIALIASING.and(Effects::HEADLAMP);
-        let expected: Vec<Effects> = named.filter(|effect| !effect.any(sampling)).collect();
+        let by_others = Effects::ANTIALIASING
+            .and(Effects::HEADLAMP)
+            .and(Effects::LARGE_SPHERES);
+        let expected: Vec<Effects> = named.filter(|effect| !effect.any(by_others)).collect();
         assert_eq!(listed, expected);
     }
 }

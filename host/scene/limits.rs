@@ -114,6 +114,8 @@ pub const INTENSITY: Range = Range::new(0.0, 1e18);
 pub const IRRADIANCE: Range = Range::new(0.0, MAX_RADIANCE);
 /// What a radiance is multiplied by. The product is a [`RADIANCE`].
 pub const STRENGTH: Range = Range::new(0.0, 1e12);
+/// By how many degrees the image of the sky is turned.
+pub const ROTATION: Range = Range::new(-360.0, 360.0);
 /// The roughness of metal and plastic.
 pub const ROUGHNESS: Range = Range::new(0.0, 1.0);
 /// The refractive index of glass over that of what surrounds it.

@@ -7,9 +7,13 @@
 //! | [`limits`] | the ranges of a scene's numbers |
 //! | [`surroundings`] | light, sky, fog, lens: everything besides spheres |
 //! | [`mod@effects`] | which effects a scene calls for, and what calls for them |
+//! | `copies` | equal spheres, of which one can be seen |
+//! | `glass` | glass in glass, and glass around a point |
 //! | `validate` | checks whether a scene can be rendered |
 
+mod copies;
 pub mod effects;
+mod glass;
 pub mod limits;
 pub mod surroundings;
 mod validate;

@@ -27,6 +27,15 @@ pub struct Surroundings {
     pub sun: Option<Sun>,
     /// An image that replaces horizon and zenith.
     pub image: Option<EnvironmentImage>,
+    /// By how many degrees the image is turned to the right, seen from the scene.
+    pub rotation: f32,
+}
+
+impl Surroundings {
+    /// Whether light comes from the horizon or the zenith.
+    pub(crate) fn is_plain_light(&self) -> bool {
+        self.image.is_none() && (self.horizon != Vec3::ZERO || self.zenith != Vec3::ZERO)
+    }
 }
 
 /// The sun.
@@ -98,7 +107,9 @@ pub struct Lens {
 pub struct Sampling {
     /// Samples a pixel; `None` for 1 if nothing is random, else [`Sampling::DEFAULT_SAMPLES`].
     pub samples: Option<u32>,
-    /// The most bounces of a light path: how often it is reflected or scattered.
+    /// How often light bounces on its way from one surface to the next before it reaches the one
+    /// that is seen, at most. With 0 that surface, be it a mirror, is lit directly and by nothing
+    /// else. Lights, sun and sky count alike.
     pub max_bounces: u32,
     /// The distance within which surfaces block ambient light, in scene units; `None` for no
     /// ambient occlusion.
@@ -111,7 +122,7 @@ impl Sampling {
     /// The default number of samples a pixel, if anything is random.
     pub const DEFAULT_SAMPLES: u32 = 64;
     /// The default number of bounces.
-    pub const DEFAULT_BOUNCES: u32 = 8;
+    pub const DEFAULT_BOUNCES: u32 = 32;
 }
 
 impl Default for Sampling {

@@ -119,6 +119,7 @@ fn validate_sky(sky: &Surroundings) -> Result<()> {
             all("the radiance of the sun's disc", radiance, limits::RADIANCE)?;
         }
     }
+    one("the rotation of the sky", sky.rotation, limits::ROTATION)?;
     let Some(image) = &sky.image else {
         return Ok(());
     };
@@ -345,6 +346,7 @@ mod tests {
                 size: 0.5,
                 irradiance: Vec3::ONE,
             }),
+            rotation: 0.0,
             image: None,
         }
     }
@@ -380,6 +382,7 @@ mod tests {
             }),
             ("texels", |s| {
                 s.sky = Some(Surroundings {
+                    rotation: 0.0,
                     image: Some(EnvironmentImage {
                         width: 2,
                         height: 2,
@@ -390,6 +393,7 @@ mod tests {
             }),
             ("texel 1", |s| {
                 s.sky = Some(Surroundings {
+                    rotation: 0.0,
                     image: Some(EnvironmentImage {
                         width: 2,
                         height: 1,

@@ -4,7 +4,7 @@
 use fearless_simd::{Bytes, Simd, SimdBase, SimdCombine, SimdMask, f32x8, u32x4};
 use glam::{UVec4, Vec3};
 use spherule_kernel::accel::node::Node;
-use spherule_kernel::accel::slabs::{Boxes, Slabs};
+use spherule_kernel::accel::slabs::{Boxes, Sides as _, Slabs};
 use spherule_kernel::lane::{Lane as _, Lane3};
 
 use crate::lanes::Single8;
@@ -12,7 +12,10 @@ use crate::lanes::Single8;
 /// The part of a ray that stays the same from node to node.
 pub(super) struct Planes<S: Simd> {
     simd: S,
-    boxes: Boxes<Single8<S>>,
+    inverse: Vec3,
+    near: Vec3,
+    far: Vec3,
+    end: f32,
     /// Which of a node's rows of sides are near planes.
     near_rows: [usize; 3],
 }
@@ -22,12 +25,10 @@ impl<S: Simd> Planes<S> {
     pub(super) fn of(simd: S, slabs: &Slabs) -> Self {
         Self {
             simd,
-            boxes: Boxes {
-                inverse: Single8::splat3(simd, slabs.inverse),
-                near: Single8::splat3(simd, slabs.near),
-                far: Single8::splat3(simd, slabs.far),
-                end: Single8::splat(simd, 0.0),
-            },
+            inverse: slabs.inverse,
+            near: slabs.near,
+            far: slabs.far,
+            end: 0.0,
             near_rows: slabs.near_rows.to_array().map(|row| row as usize),
         }
     }
@@ -35,31 +36,28 @@ impl<S: Simd> Planes<S> {
     /// Sets the end of the ray, as [`Slabs::widened_end`] returns it.
     #[inline(always)]
     pub(super) fn end_at(&mut self, end: f32) {
-        self.boxes.end = Single8::splat(self.simd, end);
+        self.end = end;
     }
 
     /// Which of a node's boxes the ray may meet, a bit each, and where it enters them.
     #[inline(always)]
     pub(super) fn meets(&self, node: &Node) -> (u32, f32x8<S>) {
-        let Self { simd, boxes, .. } = self;
+        let simd = self.simd;
         let corner = [node.corner.x, node.corner.y, node.corner.z].map(f32::from_bits);
-        let corner = Single8::splat3(*simd, Vec3::from_array(corner));
-        let i = boxes.inverse;
-        let from_corner = |first: Lane3<Single8<S>>| Lane3 {
-            x: corner.x.mul_add_rough(i.x, first.x),
-            y: corner.y.mul_add_rough(i.y, first.y),
-            z: corner.z.mul_add_rough(i.z, first.z),
-        };
+        let corner = Single8::splat3(simd, Vec3::from_array(corner));
+        let inverse = Single8::splat3(simd, self.inverse);
+        let from_corner = |first: Vec3| corner.times_plus(inverse, Single8::splat3(simd, first));
         let boxes = Boxes {
-            near: from_corner(boxes.near),
-            far: from_corner(boxes.far),
-            ..*boxes
+            inverse,
+            near: from_corner(self.near),
+            far: from_corner(self.far),
+            end: Single8::splat(simd, self.end),
         };
         let row = |at: usize| {
             // SAFETY: `at` is one of the six rows: near rows are 0 or 3, 1 or 4, 2 or 5, and far
             // ones the others.
             let words: &UVec4 = unsafe { node.sides.get_unchecked(at) };
-            let words = u32x4::load_array_ref(*simd, words.as_ref());
+            let words = u32x4::load_array_ref(simd, words.as_ref());
             Single8((words << 16).combine(words).bitcast::<f32x8<S>>())
         };
         let [x, y, z] = self.near_rows;

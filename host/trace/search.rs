@@ -62,10 +62,11 @@ impl<'a> Query<'a> {
         }
     }
 
-    /// Starts the search of a ray.
+    /// Starts the search of a ray that leaves the sphere with the index `left`: see
+    /// [`Resting::left`].
     #[inline(always)]
-    pub(super) fn search(&self, ray: &Ray) -> Search {
-        Search::of(self.rung, self.intersect, ray)
+    pub(super) fn search(&self, ray: &Ray, left: u32) -> Search {
+        Search::of(self.rung, self.intersect, ray, left)
     }
 }
 
@@ -74,6 +75,9 @@ pub trait Resting: Spheres {
     /// All spheres as [`Spheres::sphere`] returns them; `None` if they move.
     #[cfg(target_arch = "x86_64")]
     fn at_rest(&self) -> Option<&[Sphere]>;
+
+    /// The index of the sphere over which rays pass, [`Hit::NONE_SPHERE`] for none.
+    fn left(&self) -> u32;
 }
 
 impl Resting for [Sphere] {
@@ -81,6 +85,11 @@ impl Resting for [Sphere] {
     #[inline]
     fn at_rest(&self) -> Option<&[Sphere]> {
         Some(self)
+    }
+
+    #[inline]
+    fn left(&self) -> u32 {
+        Hit::NONE_SPHERE
     }
 }
 
@@ -90,6 +99,11 @@ impl Resting for MovingSpheres<'_> {
     fn at_rest(&self) -> Option<&[Sphere]> {
         let moves = self.effects.any(Effects::MOTION_BLUR) & !self.velocities.is_empty();
         (!moves).then_some(self.spheres)
+    }
+
+    #[inline]
+    fn left(&self) -> u32 {
+        self.left
     }
 }
 
@@ -103,6 +117,8 @@ pub(super) struct Search {
     /// Whether the rung's hits lie within [`bounds`](spherule_kernel::cull::bounds).
     #[cfg(target_arch = "x86_64")]
     is_bounded: bool,
+    /// The index of the sphere that is passed over.
+    left: u32,
     /// The ray. Its end is lowered to where a sphere could still be nearer.
     pub(super) ray: Ray,
     /// The ray's own end.
@@ -119,7 +135,7 @@ pub(super) struct Search {
 
 impl Search {
     #[inline(always)]
-    fn of(rung: Rung, intersect: fn(Sphere, &Ray) -> f32, ray: &Ray) -> Self {
+    fn of(rung: Rung, intersect: fn(Sphere, &Ray) -> f32, ray: &Ray, left: u32) -> Self {
         let line = Line::of(ray);
         Self {
             intersect,
@@ -127,6 +143,7 @@ impl Search {
             is_robust: rung == Rung::Robust,
             #[cfg(target_arch = "x86_64")]
             is_bounded: rung.is_bounded(),
+            left,
             ray: Ray {
                 t_max: ray.end(),
                 ..*ray
@@ -269,6 +286,9 @@ impl Search {
         while found != 0 {
             let index = first + found.trailing_zeros();
             found &= found - 1;
+            if index == self.left {
+                continue;
+            }
             // SAFETY: bits are set only for spheres that exist.
             let sphere = unsafe { spheres.sphere(index) };
             if self.is_lazy {

@@ -89,17 +89,20 @@ impl<'a> Single<'a> {
 
     fn trace_one<const ANY: bool, S: Resting + ?Sized>(&self, ray: &Ray, spheres: &S) -> Hit {
         if !self.has_tree() {
-            let mut search = self.query.search(ray);
+            let mut search = self.query.search(ray, spheres.left());
             search.test::<ANY, S>(spheres, 0, spheres.count());
             return search.finish::<ANY>();
         }
         #[cfg(target_arch = "x86_64")]
-        if let (Some((wide, levels)), Some(spheres)) = (self.levels, spheres.at_rest())
+        if let (Some((wide, levels)), Some(at_rest)) = (self.levels, spheres.at_rest())
             && levels.groups.len() <= 2
-            && levels.sphere_count <= spheres.len()
+            && levels.sphere_count <= at_rest.len()
         {
+            let query = &self.query;
             // SAFETY: the machine has AVX-512, as the proof says.
-            return unsafe { stream::trace_one::<ANY>(wide, levels, &self.query, ray, spheres) };
+            return unsafe {
+                stream::trace_one::<ANY, S>(wide, levels, query, ray, spheres, at_rest)
+            };
         }
         #[cfg(target_arch = "x86_64")]
         if let Some(features) = self.features {

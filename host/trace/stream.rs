@@ -18,7 +18,7 @@ use spherule_kernel::{Hit, Ray, Rung, Sphere};
 
 use super::avx512::{Avx512, LANES};
 use super::levels::{Group, Levels};
-use super::search::Query;
+use super::search::{Query, Resting};
 use super::sixteen::{RayPlanes, Sixteen, end_of, is_plain};
 use super::walk::{self, Features};
 use crate::lanes::Single16;
@@ -95,7 +95,7 @@ pub(super) fn trace<const ANY: bool>(
         } else {
             let mut pairs = scratch.pairs.iter().peekable();
             for (index, ray) in rays.iter().enumerate() {
-                let mut search = query.search(ray);
+                let mut search = query.search(ray, spheres.left());
                 while let Some(pair) = pairs.next_if(|pair| of_pair(**pair).0 == index) {
                     let (first, count) = levels.spheres[of_pair(*pair).1];
                     search.test_wide::<ANY>(wide, spheres, first, count);
@@ -107,26 +107,27 @@ pub(super) fn trace<const ANY: bool>(
     SCRATCH.set(scratch);
 }
 
-/// Finds what one ray hits, in a world of at most two levels. There must be at least as many
-/// spheres as the levels name.
+/// Finds what one ray hits, in a world of at most two levels. `at_rest` is [`Resting::at_rest`] of
+/// the spheres; there must be at least as many as the levels name.
 ///
 /// A single ray goes through boxes from the nearest on, and skips those behind its nearest hit.
 // As for [`Nearest::evaluate`].
 #[target_feature(
     enable = "adx,aes,avx512bitalg,avx512bw,avx512cd,avx512dq,avx512f,avx512ifma,avx512vbmi,avx512vbmi2,avx512vl,avx512vnni,avx512vpopcntdq,bmi1,bmi2,cmpxchg16b,fma,fxsr,gfni,lzcnt,movbe,pclmulqdq,popcnt,rdrand,rdseed,sha,vaes,vpclmulqdq,xsave,xsavec,xsaveopt,xsaves"
 )]
-pub(super) fn trace_one<const ANY: bool>(
+pub(super) fn trace_one<const ANY: bool, S: Resting + ?Sized>(
     wide: Avx512,
     levels: &Levels,
     query: &Query<'_>,
     ray: &Ray,
-    spheres: &[Sphere],
+    spheres: &S,
+    at_rest: &[Sphere],
 ) -> Hit {
     /// The bits of a key that hold the box's index.
     const INDEX: i32 = MOST_ALONE as i32 - 1;
     let slabs = Slabs::of(query.rung.to_u32(), ray, &query.extent);
     if !is_plain(ray, slabs.start) {
-        return walk::trace_one::<ANY, _>(Features::Avx512(wide), query, ray, spheres);
+        return walk::trace_one::<ANY, S>(Features::Avx512(wide), query, ray, spheres);
     }
     let planes = RayPlanes::of(&slabs, ray.end());
     // Where a box is entered, as a float's bits, the lowest of which hold the box's index.
@@ -163,7 +164,7 @@ pub(super) fn trace_one<const ANY: bool>(
     }
     // SAFETY: as many were written.
     let keys = unsafe { keys[..count].assume_init_mut() };
-    let mut search = query.search(ray);
+    let mut search = query.search(ray, spheres.left());
     let mut last_key = i32::MAX;
     for done in 0..keys.len() {
         // Moves the nearest of the rest to its place.
@@ -176,7 +177,7 @@ pub(super) fn trace_one<const ANY: bool>(
             break;
         }
         let (first, count) = levels.spheres[(key & INDEX) as usize];
-        search.test_wide::<ANY>(wide, spheres, first, count);
+        search.test_wide::<ANY>(wide, at_rest, first, count);
         if ANY && search.hit.is_some() {
             break;
         }
@@ -471,6 +472,7 @@ mod tests {
                 velocities: &[],
                 time: 0.0,
                 effects: Effects::default(),
+                left: Hit::NONE_SPHERE,
             };
             let name = format!("{} spheres, a heap: {is_heap}", spheres.len());
             for rung in Rung::ALL {

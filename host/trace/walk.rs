@@ -91,7 +91,7 @@ macro_rules! with_features {
             spheres: &S,
         ) -> Hit {
             let mut stack = Stack::new();
-            let mut walk = Walk::of(wide, query, ray);
+            let mut walk = Walk::of(wide, query, ray, spheres.left());
             while walk.step::<ANY, S>(query.tree.nodes(), spheres, &mut stack) {}
             walk.search.finish::<ANY>()
         }
@@ -137,7 +137,7 @@ fn in_turns<const ANY: bool, W: Wide, S: Resting + ?Sized>(
     let mut count = 0;
     for (walk, index) in walks.iter_mut().zip(&mut indices) {
         let Some((of, ray)) = rest.next() else { break };
-        walk.write(Walk::of(wide, query, ray));
+        walk.write(Walk::of(wide, query, ray, spheres.left()));
         *index = of;
         count += 1;
     }
@@ -152,7 +152,7 @@ fn in_turns<const ANY: bool, W: Wide, S: Resting + ?Sized>(
             }
             put(indices[place], walk.search.finish::<ANY>());
             if let Some((of, ray)) = rest.next() {
-                *walk = Walk::of(wide, query, ray);
+                *walk = Walk::of(wide, query, ray, spheres.left());
                 indices[place] = of;
                 place += 1;
             } else {
@@ -229,11 +229,11 @@ struct Walk<W: Wide> {
 
 impl<W: Wide> Walk<W> {
     #[inline(always)]
-    fn of(wide: W, query: &Query<'_>, ray: &Ray) -> Self {
+    fn of(wide: W, query: &Query<'_>, ray: &Ray, left: u32) -> Self {
         let slabs = Slabs::of(query.rung.to_u32(), ray, &query.extent);
         let mut walk = Self {
             wide,
-            search: query.search(ray),
+            search: query.search(ray, left),
             planes: Planes::of(wide.simd(), &slabs),
             start: slabs.start,
             unit: slabs.unit,
@@ -413,6 +413,7 @@ pub(super) mod tests {
                 velocities: &velocities,
                 time: 1.0,
                 effects: Effects::MOTION_BLUR,
+                left: Hit::NONE_SPHERE,
             };
             // SAFETY: the indices are below the count.
             (0..moving.count())
@@ -425,6 +426,7 @@ pub(super) mod tests {
             velocities: &velocities,
             time: 1.0,
             effects: Effects::MOTION_BLUR,
+            left: Hit::NONE_SPHERE,
         };
         compare(tree.nodes.tree(), &moving, &rays(&mut random));
         let resting = MovingSpheres {

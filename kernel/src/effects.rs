@@ -63,6 +63,11 @@ effects! {
     TRANSPARENT_BACKGROUND = 16, "transparent-background";
     /// A diffuse base under a clear coat.
     PLASTIC = 17, "plastic";
+    /// Spheres so large, or so far from the origin, that where a ray meets them is computed in
+    /// pairs of floats.
+    LARGE_SPHERES = 18, "large-spheres";
+    /// Glass in other glass, or that overlaps it, and cameras in glass.
+    NESTED_GLASS = 19, "nested-glass";
 }
 
 impl Effects {

@@ -2,7 +2,7 @@
 //! [`PathLaunch`] and [`Accumulator`] for `trace_paths`. Runs on the GPU and on the CPU.
 
 use bytemuck::{Pod, Zeroable};
-use glam::{UVec2, Vec3, Vec4};
+use glam::{UVec2, UVec4, Vec3, Vec4};
 
 use crate::camera::Camera;
 use crate::color::luminance;
@@ -105,7 +105,8 @@ pub struct PathLaunch {
     pub sample_count: u32,
     /// Another image of the same expectation for each seed.
     pub seed: u32,
-    /// How many times light is reflected or scattered on its way, at most.
+    /// How many times light bounces, at most: it is reflected, refracted or scattered once, and so
+    /// many times more.
     pub max_bounces: u32,
     /// The radius of the lens, in scene units.
     pub lens_radius: f32,
@@ -124,8 +125,13 @@ pub struct PathLaunch {
     pub called_effects: u32,
     /// 1 if ambient light comes from the sky, 0 if it is white.
     pub has_ambient_sky: u32,
+    /// 1 if light comes from a sky that is not an image, so that paths meet it only by chance.
+    pub has_plain_sky: u32,
     /// Nothing; it keeps what follows where the GPU's layout has it.
-    pub padding: UVec2,
+    pub padding: u32,
+    /// The glass spheres that hold the eye, the smallest first, and
+    /// [`Hit::NONE_SPHERE`](crate::Hit::NONE_SPHERE) after the last.
+    pub glass_at_eye: UVec4,
     /// What surrounds the scene.
     pub sky: Sky,
     /// The medium, if there is one.
@@ -247,9 +253,9 @@ const _: () = {
     assert!(core::mem::offset_of!(Launch, sphere_count) == 108);
     assert!(size_of::<Pixel>() == 16);
     assert!(core::mem::offset_of!(Pixel, color_depth) == 0);
-    assert!(size_of::<PathLaunch>() == 272);
-    assert!(core::mem::offset_of!(PathLaunch, sky) == 144);
-    assert!(core::mem::offset_of!(PathLaunch, fog) == 224);
+    assert!(size_of::<PathLaunch>() == 288);
+    assert!(core::mem::offset_of!(PathLaunch, sky) == 160);
+    assert!(core::mem::offset_of!(PathLaunch, fog) == 240);
     assert!(size_of::<Accumulator>() == 32);
 };
 

@@ -5,6 +5,8 @@ use glam::Vec3;
 #[cfg(target_arch = "spirv")]
 use spirv_std::num_traits::Float as _;
 
+#[cfg(all(target_arch = "spirv", not(feature = "f64")))]
+use crate::arithmetic::double_single::DoubleSingle;
 use crate::ray::Ray;
 use crate::sphere::Sphere;
 
@@ -29,15 +31,46 @@ impl Surface {
         // Relative to the centre from the start: the digits that a large |C| would take from the
         // point are still there for the normal.
         let normal = unit((ray.origin - center) + ray.direction * t);
-        // Projected back onto the sphere: what is left of the error does not depend on t. The
-        // normal's length is off by 3u, its product with r and the sum by u each, which makes
-        // 5u r + u|C| along an axis; √3 axes and a factor of two to spare.
+        // Projected back onto the sphere: what is left of the error does not depend on t.
         let point = center + normal * radius;
         let size = center.abs().max_element() + radius.abs();
         Self {
             point,
             normal,
-            error: size * (18.0 / (1 << 24) as f32),
+            error: Self::error(size),
+        }
+    }
+
+    /// How far, at most, [`Surface::at`] puts a point beside a sphere whose radius and largest
+    /// coordinate add up to `size`.
+    ///
+    /// The normal's length is off by 3u, its product with r and the sum by u each, which makes
+    /// 5u r + u|C| along an axis; √3 axes and a factor of two to spare.
+    #[inline]
+    #[must_use]
+    pub fn error(size: f32) -> f32 {
+        size * (18.0 / (1 << 24) as f32)
+    }
+
+    /// The same with a point that is nearer to the sphere: off by a few u of its own coordinates,
+    /// where u = 2⁻²⁴, however large the sphere is and however far away its centre.
+    ///
+    /// The ray's point is O + t d. It is beyond the sphere by (|P − C|² − r²) / 2r, along the
+    /// normal and up to terms of second order. In pairs of floats this is off by a few u² (|C| +
+    /// r), and it is subtracted.
+    #[inline]
+    #[must_use]
+    pub fn refined(self, ray: &Ray, t: f32, sphere: Sphere) -> Self {
+        let point = ray.at(t);
+        let (beyond, radius) = (beyond(point, sphere), sphere.radius());
+        // Squares overflow where radii are beyond 2⁵⁰ or so.
+        if beyond.abs() < radius.abs() {
+            Self {
+                point: point - self.normal * beyond,
+                ..self
+            }
+        } else {
+            self
         }
     }
 
@@ -54,7 +87,9 @@ impl Surface {
 
     /// A ray that leaves the surface along `direction`, on the side of the sphere that the
     /// direction points to, and from outside of the band in which rounding decides what is inside:
-    /// it does not hit again what it leaves, however small or large that is.
+    /// it does not hit again what it leaves, however small or large that is. For tracers that know
+    /// nothing of where a ray comes from; light paths start at the point itself, and
+    /// [pass over](crate::accel::brute::MovingSpheres::left) the sphere.
     #[inline]
     #[must_use]
     pub fn leave(&self, direction: Vec3) -> Ray {
@@ -69,6 +104,35 @@ impl Surface {
             direction,
         )
     }
+}
+
+/// How far a point is beyond a sphere, (|P − C|² − r²) / 2r, to within a few u² (|C| + r).
+#[cfg(any(not(target_arch = "spirv"), feature = "f64"))]
+#[inline]
+fn beyond(point: Vec3, sphere: Sphere) -> f32 {
+    let (center, radius) = (sphere.center(), f64::from(sphere.radius()));
+    let x = f64::from(point.x) - f64::from(center.x);
+    let y = f64::from(point.y) - f64::from(center.y);
+    let z = f64::from(point.z) - f64::from(center.z);
+    let squares = x * x + y * y + (z * z - radius * radius);
+    // The quotient need not be of 64 bits: it is small where it counts.
+    squares as f32 / (2.0 * sphere.radius().abs())
+}
+
+/// The same in pairs of floats.
+#[cfg(all(target_arch = "spirv", not(feature = "f64")))]
+#[inline]
+fn beyond(point: Vec3, sphere: Sphere) -> f32 {
+    let (center, radius) = (sphere.center(), sphere.radius());
+    let square = |a: f32, b: f32| {
+        let difference = DoubleSingle::difference(a, b);
+        difference.times(difference)
+    };
+    let squares = square(point.x, center.x)
+        .plus(square(point.y, center.y))
+        .plus(square(point.z, center.z))
+        .minus(DoubleSingle::product(radius, radius));
+    squares.high / (2.0 * radius.abs())
 }
 
 /// The vector at length one, or zero if its squared length is zero, overflows or is not a number.

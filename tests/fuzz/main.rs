@@ -207,6 +207,7 @@ const OF_SCENES: &[&[u8]] = &[
     b"sun_size = ",
     b"image = ",
     b"strength = ",
+    b"rotation = ",
     b"extinction = ",
     b"albedo = ",
     b"anisotropy = ",

@@ -21,6 +21,7 @@ pub(super) struct SkyTable {
     pub(super) sun_irradiance: Option<Spanned<Value>>,
     pub(super) image: Option<Spanned<Value>>,
     pub(super) strength: Option<Spanned<Value>>,
+    pub(super) rotation: Option<Spanned<Value>>,
 }
 
 impl Reader<'_> {
@@ -52,6 +53,20 @@ impl Reader<'_> {
                 })
             })
             .transpose()?;
+        let rotation = match &sky.rotation {
+            Some(value) if image.is_none() => {
+                return Err(self
+                    .wrong(
+                        value,
+                        "the sky has no image to turn",
+                        "rotation without image",
+                        "add `image`, or remove `rotation`",
+                    )
+                    .into());
+            }
+            Some(value) => self.number("rotation", value, limits::ROTATION)?,
+            None => 0.0,
+        };
         // A single colour is that of the whole sky; without any the sky is black.
         let one = horizon.or(zenith).unwrap_or(Vec3::ZERO);
         Ok(Surroundings {
@@ -59,6 +74,7 @@ impl Reader<'_> {
             zenith: zenith.unwrap_or(one),
             sun,
             image,
+            rotation,
         })
     }
 

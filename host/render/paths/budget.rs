@@ -34,7 +34,8 @@ pub struct Reached {
     pub asked: u32,
     /// The standard error of the pixels' luminance, root mean square over the image, over the mean
     /// luminance of the image. An upper estimate: it takes the stratified samples for independent.
-    /// Infinite where it is not known: for a single sample, or light beyond what floats square.
+    /// Infinite where it is not known: for a single sample, a black image, or light beyond what
+    /// floats square.
     pub noise: f64,
     /// What ended it.
     pub stopped_by: StoppedBy,
@@ -152,10 +153,11 @@ pub(super) fn noise(accumulators: &[Accumulator]) -> f64 {
         })
         .reduce(|| (0.0, 0.0), |a, b| (a.0 + b.0, a.1 + b.1));
     let count = accumulators.len().max(1) as f64;
+    // Of a black image nothing is known yet: the first sample that meets light changes all.
     if mean > 0.0 {
         (variance / count).sqrt() / (mean / count)
     } else {
-        0.0
+        f64::INFINITY
     }
 }
 

@@ -33,6 +33,7 @@ const LOCAL: u32 = Effects::ANTIALIASING
     .and(Effects::AMBIENT_OCCLUSION)
     .and(Effects::SKY_GRADIENT)
     .and(Effects::TRANSPARENT_BACKGROUND)
+    .and(Effects::LARGE_SPHERES)
     .to_bits();
 /// Effects of scenes without fog, motion and an image of the surroundings.
 const STILL: u32 = Effects::ALL

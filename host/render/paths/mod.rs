@@ -6,6 +6,7 @@
 //! | [`cpu`] | the kernel's function over bands of rows, on every thread |
 //! | [`gpu`] | the kernel's entry point over tiles and runs of samples |
 //! | [`budget`] | when enough samples are enough |
+//! | `rebase` | moves scenes that are far from the origin to it |
 //! | `preview` | a coarse image, for pixels that have no sample when the time is up |
 
 pub mod budget;
@@ -14,6 +15,7 @@ pub mod cpu;
 pub mod gpu;
 pub mod prepare;
 mod preview;
+mod rebase;
 
 use std::time::Instant;
 

@@ -1,16 +1,17 @@
 //! [`Prepared`]: what the kernel is told of a scene.
 
-use std::collections::HashSet;
+use std::borrow::Cow;
 use std::f32::consts::PI;
 use std::sync::LazyLock;
 
-use glam::{DVec3, Vec3, Vec4};
+use glam::{DVec3, UVec2, UVec4, Vec3, Vec4};
 use spherule_kernel::color::luminance;
 use spherule_kernel::fog::Fog;
 use spherule_kernel::light::sky::Sky;
 use spherule_kernel::material::microfacet::{ALBEDO_LEN, Albedo};
-use spherule_kernel::{Effects, Light, Material, PathLaunch};
+use spherule_kernel::{Effects, Hit, Light, Material, PathLaunch};
 
+use super::rebase::rebased;
 use crate::accel::{self, Acceleration, Nodes};
 use crate::error::Result;
 use crate::render::EffectChoice;
@@ -48,6 +49,9 @@ impl Prepared {
     ///
     /// As [`whole_image`].
     pub fn new(scene: &Scene, choice: EffectChoice, acceleration: Acceleration) -> Result<Self> {
+        scene.validate()?;
+        let moved = rebased(scene);
+        let scene = moved.as_ref().unwrap_or(scene);
         let whole = whole_image(scene)?;
         let called = scene.effects();
         let shown = choice.shown(called);
@@ -59,19 +63,21 @@ impl Prepared {
         } else {
             (0.0, 0.0)
         };
+        let world = scene.world.without_copies();
+        let mut world = Cow::Borrowed(world.as_ref().unwrap_or(&scene.world));
+        if shown.any(Effects::NESTED_GLASS) {
+            world = Cow::Owned(world.with_absolute_glass());
+        }
         let (world, nodes) = match accel::build(
-            &scene.world.spheres,
-            &scene.world.velocities,
+            &world.spheres,
+            &world.velocities,
             shutter,
             acceleration.min_spheres(accel::MIN_SPHERES),
         ) {
-            Some(tree) => (tree.sort_world(&scene.world), tree.nodes),
-            None => (scene.world.clone(), Nodes::default()),
+            Some(tree) => (tree.sort_world(&world), tree.nodes),
+            None => (world.into_owned(), Nodes::default()),
         };
-        let (lights, mut sky, sphere_light_probability) = lights(scene, &world);
-        if let Some(image) = scene.sky.as_ref().and_then(|sky| sky.image.as_ref()) {
-            sky.environment_size = glam::UVec2::new(image.width, image.height);
-        }
+        let (lights, sky, sphere_light_probability) = lights(scene, &world);
         let launch = PathLaunch {
             camera: whole.camera,
             image_size: whole.image_size,
@@ -89,6 +95,12 @@ impl Prepared {
             sphere_light_probability,
             called_effects: shown.to_bits(),
             has_ambient_sky: scene.sky.is_some().into(),
+            has_plain_sky: u32::from(has_plain_sky(scene)),
+            glass_at_eye: {
+                let mut around = world.glass_around(view.eye);
+                around.resize(4, Hit::NONE_SPHERE);
+                UVec4::from_slice(&around)
+            },
             sky,
             fog: fog(scene, view.eye),
             ..PathLaunch::default()
@@ -129,16 +141,9 @@ fn lights(scene: &Scene, world: &World) -> (Vec<Light>, Sky, f32) {
         local.push((Light::point(light.position, light.intensity), power.into()));
     }
     if world.materials.iter().any(|m| m.kind == Material::EMISSIVE) {
-        let mut seen = HashSet::new();
         for (index, (sphere, id)) in world.spheres.iter().zip(&world.material_ids).enumerate() {
             let material = world.materials[*id as usize];
-            // Of equal spheres one is seen, and shines.
-            let velocity = world.velocities.get(index).copied().unwrap_or_default();
-            let key = (sphere.center(), sphere.radius(), velocity);
-            let key = bytemuck::cast::<_, [u32; 7]>([
-                key.0.x, key.0.y, key.0.z, key.1, key.2.x, key.2.y, key.2.z,
-            ]);
-            if material.kind == Material::EMISSIVE && seen.insert(key) {
+            if material.kind == Material::EMISSIVE {
                 let r = f64::from(sphere.radius());
                 let power =
                     4.0 * f64::from(PI * PI) * f64::from(luminance(material.volume)) * r * r;
@@ -166,7 +171,9 @@ fn lights(scene: &Scene, world: &World) -> (Vec<Light>, Sky, f32) {
                 far.push(Light::sun(sun.direction, height, color));
             }
         }
-        if surroundings.image.is_some() {
+        if let Some(image) = &surroundings.image {
+            sky.environment_size = UVec2::new(image.width, image.height);
+            sky.environment_turn = (surroundings.rotation / 360.0).rem_euclid(1.0);
             far.push(Light::environment());
         }
     }
@@ -196,6 +203,14 @@ fn lights(scene: &Scene, world: &World) -> (Vec<Light>, Sky, f32) {
     let factor = share * 4.0 * f64::from(PI * PI) / total;
     let factor = if total > 0.0 { factor as f32 } else { 0.0 };
     (lights, sky, factor)
+}
+
+/// Whether light comes from a sky that is not an image.
+fn has_plain_sky(scene: &Scene) -> bool {
+    match &scene.sky {
+        Some(sky) => sky.is_plain_light(),
+        None => scene.background != Vec3::ZERO,
+    }
 }
 
 /// The medium, in the ball that it is said to fill or else in the one around the box of everything.
@@ -236,18 +251,30 @@ fn tables(scene: &Scene, shown: Effects) -> Vec<f32> {
 }
 
 /// The cumulative probabilities of rows and of texels in rows, and the texels.
+///
+/// A texel counts by its solid angle and by the mean luminance of what is shown in it, which is
+/// linear between the middles of texels: ¾ of the texel's own and ⅛ of each neighbour's, along both
+/// axes. It never counts for nothing.
 fn environment(image: &EnvironmentImage, tables: &mut Vec<f32>) {
     let (width, height) = (image.width as usize, image.height as usize);
+    let light = |row: usize, column: usize| {
+        let texel =
+            |row: usize, column: usize| f64::from(luminance(image.texels[row * width + column]));
+        let (before, after) = ((column + width - 1) % width, (column + 1) % width);
+        let across = |row: usize| {
+            0.75 * texel(row, column) + 0.125 * (texel(row, before) + texel(row, after))
+        };
+        let (above, below) = (row.saturating_sub(1), (row + 1).min(height - 1));
+        0.75 * across(row) + 0.125 * (across(above) + across(below))
+    };
     let mut rows = Vec::with_capacity(height);
     let mut columns = Vec::with_capacity(width * height);
     let mut total = 0.0;
-    for (row, texels) in image.texels.chunks_exact(width).enumerate() {
-        // A texel counts by its solid angle, and never for nothing.
-        let angle = |row: usize| (f64::from(PI) * row as f64 / height as f64).cos();
-        let solid = angle(row) - angle(row + 1);
-        let weights: Vec<f64> = texels
-            .iter()
-            .map(|texel| f64::from(luminance(*texel)).max(1e-12))
+    for row in 0..height {
+        let half = 0.5 * f64::from(PI) / height as f64;
+        let solid = 2.0 * (half * (2 * row + 1) as f64).sin() * half.sin();
+        let weights: Vec<f64> = (0..width)
+            .map(|column| light(row, column).max(1e-12))
             .collect();
         let sum: f64 = weights.iter().sum();
         let mut cumulative = 0.0;

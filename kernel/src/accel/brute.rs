@@ -22,6 +22,13 @@ pub trait Spheres {
     ///
     /// `index` is below [`Spheres::count`].
     unsafe fn sphere(&self, index: u32) -> Sphere;
+
+    /// Whether rays pass over the sphere with this index: see [`MovingSpheres::left`].
+    #[inline]
+    fn is_left(&self, index: u32) -> bool {
+        let _ = index;
+        false
+    }
 }
 
 impl Spheres for [Sphere] {
@@ -48,6 +55,9 @@ pub struct MovingSpheres<'a> {
     pub time: f32,
     /// The effects of the pipeline: without [`Effects::MOTION_BLUR`] all are at rest.
     pub effects: Effects,
+    /// The index of the sphere that a ray leaves, over which it passes: rounding would decide
+    /// whether it meets it where it starts. [`Hit::NONE_SPHERE`] for a ray that leaves none.
+    pub left: u32,
 }
 
 impl MovingSpheres<'_> {
@@ -81,6 +91,11 @@ impl Spheres for MovingSpheres<'_> {
         // SAFETY: the caller ensures that `index` is below the number of spheres.
         let sphere = unsafe { self.spheres.sphere(index) };
         self.moved(sphere, index as usize)
+    }
+
+    #[inline]
+    fn is_left(&self, index: u32) -> bool {
+        index == self.left
     }
 }
 
@@ -127,7 +142,7 @@ pub fn nearest_hit_in<S: Spheres + ?Sized>(
         // SAFETY: `end` is at most the number of spheres.
         let sphere = unsafe { spheres.sphere(index) };
         let t = intersect(rung, sphere, &Ray { t_max, ..*ray });
-        if t < t_max {
+        if (t < t_max) & !spheres.is_left(index) {
             t_max = t;
             hit = index;
         }
@@ -157,7 +172,7 @@ pub fn is_occluded<S: Spheres + ?Sized>(rung: u32, ray: &Ray, spheres: &S) -> bo
     while (index < spheres.count()) & !occluded {
         // SAFETY: `index` is below the number of spheres.
         let sphere = unsafe { spheres.sphere(index) };
-        occluded = intersect(rung, sphere, ray) < ray.t_max;
+        occluded = (intersect(rung, sphere, ray) < ray.t_max) & !spheres.is_left(index);
         index += 1;
     }
     occluded

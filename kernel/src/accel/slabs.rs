@@ -97,9 +97,9 @@ impl Slabs {
     #[inline]
     pub(super) fn meets(&self, corner: Vec3, sides: &[UVec4; 6], end: f32) -> u32 {
         let boxes = Boxes {
-            inverse: Lane3::of(self.inverse),
-            near: Lane3::of(corner * self.inverse + self.near),
-            far: Lane3::of(corner * self.inverse + self.far),
+            inverse: self.inverse,
+            near: corner.times_plus(self.inverse, self.near),
+            far: corner.times_plus(self.inverse, self.far),
             end: Self::widened_end(end),
         };
         let row = |row: u32| {
@@ -143,74 +143,111 @@ impl Slabs {
 /// Bit 4c of each child c.
 pub(super) const FIRST_OF_FOUR: u32 = 0x1111_1111;
 
-/// Numbers that boxes are tested in: one box at a time, or several side by side.
-pub trait BoxLane: Lane {
-    /// The largest of three numbers and zero. None may be NaN.
-    fn largest_or_zero(x: Self, y: Self, z: Self) -> Self;
+/// A number along each axis, in which boxes are tested: of one box, or of several side by side.
+pub trait Sides: Copy {
+    /// A number of each box.
+    type Number;
 
-    /// The smallest of four numbers; if some are below zero, any of those. None may be NaN.
-    fn smallest(x: Self, y: Self, z: Self, end: Self) -> Self;
+    /// `self` · `factor` + `term` along each axis, rounded once or twice.
+    fn times_plus(self, factor: Self, term: Self) -> Self;
+
+    /// The largest of the three and zero. None may be NaN.
+    fn largest_or_zero(self) -> Self::Number;
+
+    /// The smallest of the three and `end`; if some are below zero, any of those. None may be NaN.
+    fn smallest(self, end: Self::Number) -> Self::Number;
+}
+
+/// Several numbers side by side in which boxes are tested.
+pub trait BoxLane: Lane {
+    /// The larger of two numbers. None may be NaN.
+    fn larger(self, other: Self) -> Self;
+
+    /// The smaller of two numbers. None may be NaN.
+    fn smaller(self, other: Self) -> Self;
+}
+
+impl<L: BoxLane> Sides for Lane3<L> {
+    type Number = L;
+
+    #[inline(always)]
+    fn times_plus(self, factor: Self, term: Self) -> Self {
+        Self {
+            x: self.x.mul_add_rough(factor.x, term.x),
+            y: self.y.mul_add_rough(factor.y, term.y),
+            z: self.z.mul_add_rough(factor.z, term.z),
+        }
+    }
+
+    #[inline(always)]
+    fn largest_or_zero(self) -> L {
+        let zero = self.x.splat(0.0);
+        self.x.larger(self.y).larger(self.z.larger(zero))
+    }
+
+    #[inline(always)]
+    fn smallest(self, end: L) -> L {
+        self.x.smaller(self.y).smaller(self.z.smaller(end))
+    }
 }
 
 /// The bits of floats that are not negative are ordered as the floats are, and a GPU compares three
 /// integers at once. Negative floats are negative integers: they never win against zero where the
 /// largest is taken, and where the smallest is taken any of them will do.
-impl BoxLane for f32 {
-    #[inline(always)]
-    fn largest_or_zero(x: Self, y: Self, z: Self) -> Self {
-        let bits = |x: Self| x.to_bits() as i32;
-        Self::from_bits(larger(larger(larger(bits(x), bits(y)), bits(z)), 0) as u32)
+impl Sides for Vec3 {
+    type Number = f32;
+
+    #[inline]
+    fn times_plus(self, factor: Self, term: Self) -> Self {
+        self * factor + term
     }
 
-    #[inline(always)]
-    fn smallest(x: Self, y: Self, z: Self, end: Self) -> Self {
-        let bits = |x: Self| x.to_bits() as i32;
-        Self::from_bits(smaller(smaller(smaller(bits(x), bits(y)), bits(z)), bits(end)) as u32)
+    #[inline]
+    fn largest_or_zero(self) -> f32 {
+        let bits = |x: f32| x.to_bits() as i32;
+        let largest = larger(larger(larger(bits(self.x), bits(self.y)), bits(self.z)), 0);
+        f32::from_bits(largest as u32)
+    }
+
+    #[inline]
+    fn smallest(self, end: f32) -> f32 {
+        let bits = |x: f32| x.to_bits() as i32;
+        let smallest = smaller(smaller(bits(self.x), bits(self.y)), bits(self.z));
+        f32::from_bits(smaller(smallest, bits(end)) as u32)
     }
 }
 
 /// A ray in the coordinates of boxes: a side at v has the parameter v · `inverse` + `near` or
 /// `far`.
 #[derive(Clone, Copy, Debug)]
-pub struct Boxes<L> {
+pub struct Boxes<S: Sides> {
     /// One over the direction.
-    pub inverse: Lane3<L>,
+    pub inverse: S,
     /// What is added for near planes.
-    pub near: Lane3<L>,
+    pub near: S,
     /// What is added for far planes.
-    pub far: Lane3<L>,
+    pub far: S,
     /// The ray's end, as [`Slabs::widened_end`] returns it.
-    pub end: L,
+    pub end: S::Number,
 }
 
-impl<L: BoxLane> Boxes<L> {
+impl<S: Sides<Number: Copy>> Boxes<S> {
     /// Where the ray enters boxes and where it leaves them, from their near and far sides. It
     /// misses those that it leaves before it enters.
     #[inline(always)]
     #[must_use]
-    pub fn enter_and_leave(&self, near: Lane3<L>, far: Lane3<L>) -> (L, L) {
-        let i = self.inverse;
-        (
-            L::largest_or_zero(
-                near.x.mul_add_rough(i.x, self.near.x),
-                near.y.mul_add_rough(i.y, self.near.y),
-                near.z.mul_add_rough(i.z, self.near.z),
-            ),
-            L::smallest(
-                far.x.mul_add_rough(i.x, self.far.x),
-                far.y.mul_add_rough(i.y, self.far.y),
-                far.z.mul_add_rough(i.z, self.far.z),
-                self.end,
-            ),
-        )
+    pub fn enter_and_leave(&self, near: S, far: S) -> (S::Number, S::Number) {
+        let near = near.times_plus(self.inverse, self.near);
+        let far = far.times_plus(self.inverse, self.far);
+        (near.largest_or_zero(), far.smallest(self.end))
     }
 }
 
-impl Boxes<f32> {
+impl Boxes<Vec3> {
     /// The length of the ray's interval in a box, as the bits of a float; negative if the ray
     /// misses the box.
     #[inline]
-    fn gap(&self, near: Lane3<f32>, far: Lane3<f32>) -> u32 {
+    fn gap(&self, near: Vec3, far: Vec3) -> u32 {
         let (enter, leave) = self.enter_and_leave(near, far);
         (leave - enter).to_bits()
     }
@@ -228,21 +265,13 @@ fn by_word(x: UVec4, y: UVec4, z: UVec4) -> [[u32; 3]; 4] {
 }
 
 #[inline]
-fn lower([x, y, z]: [u32; 3]) -> Lane3<f32> {
-    Lane3 {
-        x: Node::lower(x),
-        y: Node::lower(y),
-        z: Node::lower(z),
-    }
+fn lower([x, y, z]: [u32; 3]) -> Vec3 {
+    Vec3::new(Node::lower(x), Node::lower(y), Node::lower(z))
 }
 
 #[inline]
-fn upper([x, y, z]: [u32; 3]) -> Lane3<f32> {
-    Lane3 {
-        x: Node::upper(x),
-        y: Node::upper(y),
-        z: Node::upper(z),
-    }
+fn upper([x, y, z]: [u32; 3]) -> Vec3 {
+    Vec3::new(Node::upper(x), Node::upper(y), Node::upper(z))
 }
 
 /// Loads all four words at once; compilers for GPUs do not merge four loads.

@@ -192,21 +192,23 @@ fn walk<const ANY: bool, S: Spheres + ?Sized>(
                 let indices = [sphere_at(links, one, count), sphere_at(links, two, count)];
                 // SAFETY: both are below the number of spheres.
                 let pair = unsafe { [spheres.sphere(indices[0]), spheres.sphere(indices[1])] };
+                let are_left = [spheres.is_left(indices[0]), spheres.is_left(indices[1])];
                 if is_lazy {
                     let [first, second] = [line.bounds(pair[0]), line.bounds(pair[1])];
-                    if first.hits & (first.high < low) {
+                    if first.hits & (first.high < low) & !are_left[0] {
                         (hit_sphere, low, end) = (indices[0], first.low, first.high);
                     } else {
-                        candidates |= u32::from(first.is_open(end)) << one;
+                        candidates |= u32::from(first.is_open(end) & !are_left[0]) << one;
                     }
-                    if second.hits & (second.high < low) {
+                    if second.hits & (second.high < low) & !are_left[1] {
                         (hit_sphere, low, end) = (indices[1], second.low, second.high);
                     } else {
-                        candidates |= u32::from(second.is_open(end) & (one != two)) << two;
+                        let is_open = second.is_open(end) & (one != two) & !are_left[1];
+                        candidates |= u32::from(is_open) << two;
                     }
                 } else {
-                    candidates |= u32::from(line.may_hit(pair[0])) << one;
-                    candidates |= u32::from(line.may_hit(pair[1])) << two;
+                    candidates |= u32::from(line.may_hit(pair[0]) & !are_left[0]) << one;
+                    candidates |= u32::from(line.may_hit(pair[1]) & !are_left[1]) << two;
                 }
                 if (leaves == 0) | (is_lazy & ANY & (low < end)) {
                     break;
@@ -253,10 +255,13 @@ fn walk<const ANY: bool, S: Spheres + ?Sized>(
                     intersect_at_once(rung, pair[0], ray),
                     intersect_at_once(rung, pair[1], ray),
                 ];
-                if (answers[0] < t) | ((answers[0] == t) & (indices[0] < hit_sphere)) {
+                let are_left = [spheres.is_left(indices[0]), spheres.is_left(indices[1])];
+                let is_nearer = (answers[0] < t) | ((answers[0] == t) & (indices[0] < hit_sphere));
+                if is_nearer & !are_left[0] {
                     (t, hit_sphere) = (answers[0], indices[0]);
                 }
-                if (answers[1] < t) | ((answers[1] == t) & (indices[1] < hit_sphere)) {
+                let is_nearer = (answers[1] < t) | ((answers[1] == t) & (indices[1] < hit_sphere));
+                if is_nearer & !are_left[1] {
                     (t, hit_sphere) = (answers[1], indices[1]);
                 }
                 if candidates == 0 {

@@ -17,12 +17,14 @@ use crate::material::microfacet::ALBEDO_LEN;
 ///
 /// An image is an equirectangular map of `environment_size` texels: its columns go once around,
 /// with −z in the middle and +x right of it, its rows from the zenith to the nadir. Radiance is
-/// constant in a texel. It lies in the kernel's tables, after [`ALBEDO_LEN`] floats: the cumulative
-/// probability of each row, that of each texel in its row, and the texels' three channels.
+/// linear between the middles of texels. The image lies in the kernel's tables, after
+/// [`ALBEDO_LEN`] floats: the cumulative probability of each row, that of each texel in its row,
+/// and the texels' three channels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Sky {
-    /// The radiance at the horizon and below, or of the whole sky if it has no gradient.
+    /// The radiance at the horizon and below, or of the whole sky if it has no gradient. From there
+    /// to the zenith it changes with the sine of the elevation.
     pub horizon: Vec3,
     /// The probability that the environment is the light that is sampled.
     pub environment_probability: f32,
@@ -36,8 +38,8 @@ pub struct Sky {
     pub sun_height: f32,
     /// The sun's radiance.
     pub sun_radiance: Vec3,
-    /// Padding for the layout on a GPU.
-    pub padding: u32,
+    /// By how much of a whole turn the image is turned to the right, seen from the middle.
+    pub environment_turn: f32,
     /// Width and height of the image of the surroundings, in texels.
     pub environment_size: UVec2,
     /// Padding for the layout on a GPU.
@@ -50,10 +52,9 @@ impl Sky {
     #[must_use]
     pub fn radiance(&self, effects: Effects, direction: Vec3, tables: &[f32]) -> Vec3 {
         if effects.any(Effects::ENVIRONMENT) {
-            self.texel(self.texel_at(direction), tables)
+            self.interpolated(direction, tables)
         } else if effects.any(Effects::SKY_GRADIENT) {
-            let t = (0.5 * (direction.y + 1.0)).clamp(0.0, 1.0);
-            self.horizon + (self.zenith - self.horizon) * t
+            self.horizon + (self.zenith - self.horizon) * direction.y.clamp(0.0, 1.0)
         } else {
             self.horizon
         }
@@ -68,14 +69,44 @@ impl Sky {
         0.5 * apart.dot(apart) < self.sun_height
     }
 
+    /// Where the image shows a direction: across from 0 up to 1, and from the zenith at 0 to the
+    /// nadir at 1. Near both, the cosine of the angle from the axis would lose its digits.
+    #[inline]
+    fn place_of(&self, direction: Vec3) -> Vec2 {
+        let around = 0.5 + direction.x.atan2(-direction.z) / TAU - self.environment_turn;
+        let level = (direction.x * direction.x + direction.z * direction.z).sqrt();
+        Vec2::new(around - around.floor(), level.atan2(direction.y) / PI)
+    }
+
     fn texel_at(&self, direction: Vec3) -> UVec2 {
-        let size = self.environment_size;
-        let u = 0.5 + direction.x.atan2(-direction.z) / TAU;
-        let v = direction.y.clamp(-1.0, 1.0).acos() / PI;
+        let (size, place) = (self.environment_size, self.place_of(direction));
         UVec2::new(
-            ((u * size.x as f32) as u32).min(size.x.max(1) - 1),
-            ((v * size.y as f32) as u32).min(size.y.max(1) - 1),
+            ((place.x * size.x as f32) as u32).min(size.x.max(1) - 1),
+            ((place.y * size.y as f32) as u32).min(size.y.max(1) - 1),
         )
+    }
+
+    /// The radiance that the image shows in a direction: linear between the middles of texels,
+    /// around without an end, and constant above the first row's middle and below the last's.
+    fn interpolated(&self, direction: Vec3, tables: &[f32]) -> Vec3 {
+        let (size, place) = (self.environment_size, self.place_of(direction));
+        let (width, height) = (size.x.max(1), size.y.max(1));
+        let x = (place.x * width as f32 - 0.5).max(-0.5);
+        let y = (place.y * height as f32 - 0.5).clamp(0.0, (height - 1) as f32);
+        let (left, top) = (x.floor(), y.floor());
+        let (across, down) = (x - left, y - top);
+        let before = if left < 0.0 {
+            width - 1
+        } else {
+            (left as u32).min(width - 1)
+        };
+        let after = if before + 1 < width { before + 1 } else { 0 };
+        let above = (top as u32).min(height - 1);
+        let below = (above + 1).min(height - 1);
+        let texel = |x: u32, y: u32| self.texel(UVec2::new(x, y), tables);
+        let upper = texel(before, above) * (1.0 - across) + texel(after, above) * across;
+        let lower = texel(before, below) * (1.0 - across) + texel(after, below) * across;
+        upper * (1.0 - down) + lower * down
     }
 
     #[inline]
@@ -115,10 +146,10 @@ impl Sky {
         let size = self.environment_size;
         let row = share(tables, self.row_table(), texel.y);
         let column = share(tables, self.columns_of(texel.y), texel.x);
-        // The solid angle of the texel.
-        let angle = |row: f32| (PI * row / size.y as f32).cos();
-        let y = texel.y as f32;
-        let solid = (angle(y) - angle(y + 1.0)) * TAU / size.x as f32;
+        // The solid angle of the texel, without the difference of two cosines.
+        let half = 0.5 * PI / size.y as f32;
+        let middle = half * (2.0 * texel.y as f32 + 1.0);
+        let solid = 2.0 * middle.sin() * half.sin() * TAU / size.x as f32;
         row * column / solid
     }
 
@@ -137,17 +168,21 @@ impl Sky {
         let (row, v) = find(tables, self.row_table(), size.y, u.y);
         let (column, h) = find(tables, self.columns_of(row), size.x, u.x);
         let texel = UVec2::new(column, row);
-        // Uniform in the solid angle of the texel.
-        let angle = |row: f32| (PI * row / size.y as f32).cos();
-        let above = angle(row as f32);
-        let y = above + (angle(row as f32 + 1.0) - above) * v;
-        let around = TAU * ((column as f32 + h) / size.x as f32 - 0.5);
-        let r = (1.0 - y * y).max(0.0).sqrt();
+        // Uniform in the solid angle of the texel: the squares of sine and cosine of half the angle
+        // from the zenith keep their digits near both ends.
+        let half = 0.5 * PI / size.y as f32;
+        let (above, below) = (half * row as f32, half * (row as f32 + 1.0));
+        let between = |above: f32, below: f32| above + (below - above) * v;
+        let sine = between(above.sin() * above.sin(), below.sin() * below.sin());
+        let cosine = between(above.cos() * above.cos(), below.cos() * below.cos());
+        let (y, r) = (cosine - sine, 2.0 * (sine * cosine).max(0.0).sqrt());
+        let turned = (column as f32 + h) / size.x as f32 - 0.5 + self.environment_turn;
+        let around = TAU * turned;
         let direction = Vec3::new(r * around.sin(), y, -r * around.cos());
         (
             direction,
             self.density_in(texel, tables),
-            self.texel(texel, tables),
+            self.interpolated(direction, tables),
         )
     }
 }

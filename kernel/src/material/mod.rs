@@ -110,6 +110,14 @@ impl Material {
     }
 }
 
+impl Material {
+    /// Whether it is glass, solid or hollow.
+    #[must_use]
+    pub const fn is_glass(&self) -> bool {
+        (self.kind == Self::GLASS) | (self.kind == Self::BUBBLE)
+    }
+}
+
 /// The material of the sphere with this index; an index beyond `materials`
 /// selects its last entry.
 #[inline]

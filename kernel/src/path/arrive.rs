@@ -15,7 +15,7 @@ use crate::sphere::Sphere;
 #[inline]
 pub(super) fn arrive_at_sky<T: Traversal>(scenery: &Scenery<'_, T>, path: &mut Path) {
     let (effects, sky) = (scenery.effects, &scenery.launch.sky);
-    if effects.any(Effects::TRANSPARENT_BACKGROUND) && path.bounces == 0 {
+    if effects.any(Effects::TRANSPARENT_BACKGROUND) && path.bounces() == 0 {
         path.alpha = 0.0;
         return;
     }
@@ -34,7 +34,7 @@ pub(super) fn arrive_at_sky<T: Traversal>(scenery: &Scenery<'_, T>, path: &mut P
         }
         light += sky.sun_radiance * weight;
     }
-    path.radiance += path.throughput * light;
+    path.radiance += path.throughput * light * path.outside_of_glass(scenery);
 }
 
 /// Adds the light of an emissive sphere, for a path that meets one.
@@ -52,5 +52,5 @@ pub(super) fn arrive_at_lamp<T: Traversal>(
         let other = chosen * light::sphere_density(sphere, path.origin);
         weight = power_heuristic(path.density, other);
     }
-    path.radiance += path.throughput * radiance * weight;
+    path.radiance += path.throughput * radiance * (weight * path.outside_of_glass(scenery));
 }

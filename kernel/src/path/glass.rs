@@ -6,38 +6,80 @@ use glam::Vec3;
 use spirv_std::num_traits::Float as _;
 
 use super::light_path::Path;
+use super::media::Media;
+use super::place::Place;
+use super::scenery::Scenery;
+use crate::accel::traversal::Traversal;
+use crate::effects::Effects;
 use crate::material::Material;
 use crate::material::optics::{Incidence, reflect};
-use crate::surface::{Surface, unit};
+use crate::surface::unit;
+
+/// Takes a path through the surface of a glass sphere, beyond which it is in `beyond`, if a smaller
+/// sphere covers the surface. Returns whether it does.
+#[inline]
+pub(super) fn passes_covered_glass(path: &mut Path, place: &Place, beyond: Media) -> bool {
+    let passes = (beyond.0.x == path.media.0.x) && path.passes(place);
+    if passes {
+        path.media = beyond;
+    }
+    passes
+}
 
 /// Reflects or refracts a path at glass, by chance: the probabilities are those of Fresnel's
-/// equations.
+/// equations. `media` is what is beyond the surface, where glass is nested.
 #[inline]
-pub(super) fn cross_glass(path: &mut Path, surface: &Surface, material: &Material, u: f32) {
+pub(super) fn cross_glass<T: Traversal>(
+    scenery: &Scenery<'_, T>,
+    path: &mut Path,
+    place: &Place,
+    media: Media,
+    u: f32,
+) {
+    let surface = &place.surface;
     let cosine = surface.normal.dot(path.direction);
     let enters = cosine < 0.0;
-    let (normal, eta) = if enters {
-        (surface.normal, 1.0 / material.parameter)
+    let mut beyond = path.medium;
+    let eta;
+    if scenery.effects.any(Effects::NESTED_GLASS) {
+        eta = path.media.medium(scenery).index / media.medium(scenery).index;
     } else {
-        (-surface.normal, material.parameter)
-    };
+        let material = &place.material;
+        eta = if enters {
+            1.0 / material.parameter
+        } else {
+            material.parameter
+        };
+        // Glass is inside of a sphere of glass and outside of a hollow.
+        let is_glass = enters == (material.kind == Material::GLASS);
+        beyond.index = path.medium.index / eta;
+        beyond.absorption = if is_glass {
+            material.volume
+        } else {
+            Vec3::ZERO
+        };
+    }
     let incidence = Incidence {
         cosine: cosine.abs().min(1.0),
         eta,
+    };
+    let normal = if enters {
+        surface.normal
+    } else {
+        -surface.normal
     };
     let fresnel = incidence.fresnel();
     let direction = if u < fresnel.reflectance {
         reflect(path.direction, normal)
     } else {
-        // The glass, which absorbs, is inside of a sphere of glass and outside of a hollow.
-        path.absorption = if enters == (material.kind == Material::GLASS) {
-            material.volume
-        } else {
-            Vec3::ZERO
-        };
+        path.medium = beyond;
+        path.media = media;
+        // Of spheres that are not nested, only the outside of one of glass is outside of glass.
+        let is_in_glass = enters | (place.material.kind != Material::GLASS);
+        path.is_in_glass = u32::from(is_in_glass);
         fresnel.refract(incidence, path.direction, normal)
     };
-    path.leave(surface, unit(direction), 0.0);
+    path.leave(place, unit(direction), 0.0);
 }
 
 /// The share of light that is left after this distance, by Beer's law.

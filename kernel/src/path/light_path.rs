@@ -2,37 +2,131 @@
 
 use glam::Vec3;
 
-use crate::surface::Surface;
+use super::media::{Media, Medium};
+use super::place::Place;
+use super::scenery::Scenery;
+use crate::accel::traversal::Traversal;
+use crate::effects::Effects;
+use crate::hit::Hit;
+use crate::ray::Ray;
 
 /// The state of a light path.
 #[derive(Clone, Copy)]
 pub(super) struct Path {
     pub(super) origin: Vec3,
+    /// The index of the sphere that the path leaves, [`Hit::NONE_SPHERE`](crate::Hit::NONE_SPHERE)
+    /// if it leaves none.
+    pub(super) left: u32,
     pub(super) direction: Vec3,
+    /// Where the path meets the sphere that it leaves again: see [`Place::exit`].
+    pub(super) exit: f32,
     /// The weight of light that arrives here.
     pub(super) throughput: Vec3,
     /// The light that has arrived so far.
     pub(super) radiance: Vec3,
-    /// The absorption per scene unit of the glass that the path is in.
-    pub(super) absorption: Vec3,
+    /// What the path is in, if no glass is nested.
+    pub(super) medium: Medium,
+    /// The glass that the path is in, if glass may be nested.
+    pub(super) media: Media,
+    /// 1 in glass and in a hollow in glass, if no glass is nested.
+    pub(super) is_in_glass: u32,
     /// The density with which the direction was sampled, or zero if no light was sampled.
     pub(super) density: f32,
     pub(super) time: f32,
-    pub(super) bounces: u32,
+    /// The number of bounces, and 2¹⁶ times that of surfaces of glass that the path has passed
+    /// because smaller spheres cover them.
+    pub(super) events: u32,
     /// Zero for a path that met nothing but the background.
     pub(super) alpha: f32,
     /// The distance to the first sphere, [`Hit::NONE_T`](crate::Hit::NONE_T) if there was none.
     pub(super) depth: f32,
 }
 
+/// The most surfaces of glass that a path passes.
+const MOST_PASSES: u32 = 1 << 12;
+
 impl Path {
+    /// How often the path has bounced.
+    #[inline]
+    pub(super) fn bounces(&self) -> u32 {
+        self.events & 0xffff
+    }
+
+    /// Passes a surface of glass as if nothing were there, and returns whether the path may: it has
+    /// an end also among degenerate spheres.
+    #[inline]
+    pub(super) fn passes(&mut self, place: &Place) -> bool {
+        let may_pass = self.events < MOST_PASSES << 16;
+        if may_pass {
+            self.leave(place, self.direction, 0.0);
+            self.events += (1 << 16) - 1;
+        }
+        may_pass
+    }
+
+    /// What the path is in.
+    #[inline]
+    pub(super) fn medium<T: Traversal>(&self, scenery: &Scenery<'_, T>) -> Medium {
+        if scenery.effects.any(Effects::NESTED_GLASS) {
+            self.media.medium(scenery)
+        } else {
+            self.medium
+        }
+    }
+
+    /// The radiance that light of radiance one here has outside of glass, but for what is reflected
+    /// and absorbed on the way: 1/n². Radiance over n² stays what it is where light is refracted
+    /// (F. E. Nicodemus, Radiance, Am. J. Phys. 31 (1963)), so that clear glass adds no light.
+    #[inline]
+    pub(super) fn outside_of_glass<T: Traversal>(&self, scenery: &Scenery<'_, T>) -> f32 {
+        if scenery.effects.any(Effects::GLASS) {
+            let index = self.medium(scenery).index;
+            1.0 / (index * index)
+        } else {
+            1.0
+        }
+    }
+
+    /// The ray along which the path goes on.
+    #[inline]
+    pub(super) fn ray(&self) -> Ray {
+        Ray::within(self.origin, self.direction, f32::MIN_POSITIVE, Hit::NONE_T)
+    }
+
+    /// The glass on the other side of the surface that the path has met.
+    #[inline]
+    pub(super) fn media_beyond<T: Traversal>(
+        &self,
+        scenery: &Scenery<'_, T>,
+        place: &Place,
+    ) -> Media {
+        if place.surface.normal.dot(self.direction) < 0.0 {
+            self.media.with(scenery, place.sphere, self.time)
+        } else {
+            self.media.without(place.sphere)
+        }
+    }
+
+    /// Whether fog, where there is some, is around the path. Glass holds none.
+    #[inline]
+    pub(super) fn is_in_fog(&self, effects: Effects) -> bool {
+        let is_in_glass = if effects.any(Effects::NESTED_GLASS) {
+            !self.media.is_none()
+        } else {
+            effects.any(Effects::GLASS) && self.is_in_glass == 1
+        };
+        effects.any(Effects::FOG) && !is_in_glass
+    }
+
     /// Sends the path off in `direction`, a unit vector that was sampled with this density.
     #[inline]
-    pub(super) fn leave(&mut self, surface: &Surface, direction: Vec3, density: f32) {
-        self.origin = surface.leave(direction).origin;
+    pub(super) fn leave(&mut self, place: &Place, direction: Vec3, density: f32) {
+        self.origin = place.surface.point;
+        self.left = place.sphere;
         self.direction = direction;
+        self.exit = place.exit(direction);
         self.density = density;
-        self.bounces += 1;
+        self.events += 1;
     }
 }
 
@@ -43,7 +137,7 @@ pub(super) fn survives(path: &mut Path, u: f32) -> bool {
     if brightest <= 0.0 {
         return false;
     }
-    if path.bounces > 3 {
+    if path.bounces() > 3 {
         let chance = brightest.clamp(0.05, 1.0);
         path.throughput *= 1.0 / chance;
         return u < chance;

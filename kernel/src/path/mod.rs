@@ -15,13 +15,15 @@
 //! | [`trace_pixel`] | traces the paths of a pixel, vertex after vertex |
 //! | `vertex` | how a vertex scatters |
 //! | `seek`, `arrive` | lights that are sampled, lights that are met by chance |
-//! | `glass` | reflection, refraction and absorption |
-//! | `light_path` | the state of a path |
+//! | `glass`, `media` | reflection, refraction and absorption; the glass that a path is in |
+//! | `light_path`, `place` | the state of a path, and where it is scattered |
 //! | [`random`], [`sampling`] | random numbers, and random directions made of them |
 
 mod arrive;
 mod glass;
 mod light_path;
+mod media;
+mod place;
 pub mod random;
 pub mod sampling;
 mod scenery;

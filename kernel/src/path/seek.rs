@@ -8,6 +8,7 @@ use spirv_std::num_traits::Float as _;
 
 use super::glass::absorb;
 use super::light_path::Path;
+use super::place::Place;
 use super::random::VertexNumbers;
 use super::sampling::{cone, cone_density, power_heuristic};
 use super::scenery::Scenery;
@@ -17,20 +18,19 @@ use crate::effects::Effects;
 use crate::hit::Hit;
 use crate::light::{self, Light};
 use crate::precision::intersect;
-use crate::surface::{Surface, unit};
+use crate::ray::Ray;
+use crate::surface::unit;
 
-/// The ambient light that arrives at the surface from `direction`.
+/// The ambient light that arrives at the place from `direction`.
 #[inline]
 pub(super) fn ambient_light<T: Traversal>(
     scenery: &Scenery<'_, T>,
     time: f32,
-    surface: &Surface,
+    place: &Place,
     direction: Vec3,
 ) -> Vec3 {
     let (effects, launch) = (scenery.effects, scenery.launch);
-    let mut ray = surface.leave(direction);
-    ray.t_max = launch.ambient_distance;
-    if scenery.is_occluded(&ray, time) {
+    if scenery.is_occluded(place, direction, launch.ambient_distance, time) {
         Vec3::ZERO
     } else if launch.has_ambient_sky == 1 {
         launch.sky.radiance(effects, direction, scenery.tables)
@@ -44,7 +44,7 @@ pub(super) fn ambient_light<T: Traversal>(
 pub(super) fn light_from_seeking<T: Traversal>(
     scenery: &Scenery<'_, T>,
     path: &Path,
-    surface: &Surface,
+    place: &Place,
     vertex: &Vertex,
     continues: bool,
     numbers: &VertexNumbers,
@@ -59,7 +59,7 @@ pub(super) fn light_from_seeking<T: Traversal>(
     let found = seek(
         scenery,
         &lamp,
-        surface.point,
+        place.surface.point,
         path.time,
         numbers.towards_light(),
     );
@@ -68,30 +68,36 @@ pub(super) fn light_from_seeking<T: Traversal>(
     if !((found.density > 0.0) & (light.max_element() > 0.0)) {
         return Vec3::ZERO;
     }
-    let mut shadow = surface.leave(found.direction);
-    shadow.t_max = found.distance;
+    let direction = found.direction;
+    let mut distance = found.distance;
     if scenery.effects.any(Effects::SOFT_SHADOWS) && found.is_sphere {
         // Up to where the sphere itself begins: the interval is half-open.
         let lamp = scenery.sphere(lamp.sphere as usize, path.time);
-        shadow.t_max = intersect(scenery.rung, lamp, &shadow);
-        if shadow.t_max >= Hit::NONE_T {
-            return Vec3::ZERO;
+        let origin = place.surface.point;
+        let ray = Ray::within(origin, direction, f32::MIN_POSITIVE, Hit::NONE_T);
+        distance = intersect(scenery.rung, lamp, &ray);
+        if distance >= Hit::NONE_T {
+            // The direction is one in which the sphere is seen, but for rounding, and the ray
+            // passes it by: up to where the sphere is nearest.
+            let towards = lamp.center() - origin;
+            distance = towards.length() - lamp.radius().abs();
         }
     }
-    if scenery.is_occluded(&shadow, path.time) {
+    if scenery.is_occluded(place, direction, distance, path.time) {
         return Vec3::ZERO;
     }
     let mut weight = 1.0;
     if continues & !found.is_delta {
         weight = power_heuristic(found.density, density);
     }
-    if scenery.effects.any(Effects::FOG) {
+    weight *= path.outside_of_glass(scenery);
+    if path.is_in_fog(scenery.effects) {
         let fog = &scenery.launch.fog;
-        weight *= fog.transmittance(shadow.origin, shadow.direction, shadow.t_max);
+        weight *= fog.transmittance(place.surface.point, direction, distance);
     }
     let mut light = light * (weight / found.density);
-    if scenery.effects.any(Effects::GLASS) && shadow.t_max < Hit::NONE_T {
-        light *= absorb(path.absorption, shadow.t_max);
+    if scenery.effects.any(Effects::GLASS) && distance < Hit::NONE_T {
+        light *= absorb(path.medium(scenery).absorption, distance);
     }
     light
 }

@@ -8,8 +8,10 @@ use core::f32::consts::PI;
 use glam::{UVec2, Vec2, Vec3};
 
 use super::arrive::{arrive_at_lamp, arrive_at_sky};
-use super::glass::{absorb, cross_glass};
+use super::glass::{absorb, cross_glass, passes_covered_glass};
 use super::light_path::{Path, survives};
+use super::media::{Media, Medium};
+use super::place::Place;
 use super::random::{Sampler, VertexNumbers};
 use super::sampling::{cosine_hemisphere, disc};
 use super::scenery::Scenery;
@@ -92,59 +94,62 @@ fn start<T: Traversal>(scenery: &Scenery<'_, T>, pixel: UVec2, sampler: &Sampler
         let open = launch.shutter_open;
         time = open + (launch.shutter_close - open) * sampler.single(2);
     }
-    Path {
+    let mut path = Path {
         origin,
+        left: Hit::NONE_SPHERE,
         direction: unit(direction),
+        exit: Hit::NONE_T,
         throughput: Vec3::ONE,
         radiance: Vec3::ZERO,
-        absorption: Vec3::ZERO,
+        medium: Medium {
+            index: 1.0,
+            absorption: Vec3::ZERO,
+        },
+        media: Media::NONE,
+        is_in_glass: 0,
         density: 0.0,
         time,
-        bounces: 0,
+        events: 0,
         alpha: 1.0,
         depth: Hit::NONE_T,
+    };
+    if effects.any(Effects::NESTED_GLASS) {
+        path.media = Media(launch.glass_at_eye);
     }
-}
-
-/// The place of a path: on a surface, or in fog. The surface comes last, because naga counts 32
-/// bytes for it, and it has 28.
-#[repr(C)]
-struct Place {
-    material: Material,
-    surface: Surface,
+    path
 }
 
 /// The event at a place is one of these two, or else the lobe that scatters the path.
 const ENDS: u32 = u32::MAX;
 /// The path has left for the next place.
 const LEAVES: u32 = u32::MAX - 1;
+/// The path goes on as if nothing were there.
+const PASSES: u32 = u32::MAX - 2;
 
 /// Takes a path to its next place and away from it. Returns false if the path ends.
 #[inline]
 fn step<T: Traversal>(scenery: &Scenery<'_, T>, path: &mut Path, sampler: &Sampler) -> bool {
-    let (effects, launch) = (scenery.effects, scenery.launch);
-    let numbers = sampler.at_vertex(path.bounces);
-    let ray = Ray::within(path.origin, path.direction, f32::MIN_POSITIVE, Hit::NONE_T);
-    let hit = scenery.nearest_hit(&ray, path.time);
-    let continues = effects.any(BOUNCING) & (path.bounces < launch.max_bounces);
+    let effects = scenery.effects;
+    let numbers = sampler.at_vertex(path.bounces());
+    let ray = path.ray();
+    let hit = scenery.nearest_hit(&ray, path.left, path.exit, path.time);
+    let continues = effects.any(BOUNCING) & (path.bounces() <= scenery.most_bounces());
 
-    let mut place = Place {
-        material: Material::diffuse(Vec3::ONE),
-        surface: Surface {
-            point: Vec3::ZERO,
-            normal: Vec3::ZERO,
-            error: 0.0,
-        },
+    let mut place = Place::none();
+    let is_in_fog =
+        path.is_in_fog(effects) && meet_fog(scenery, path, &ray, hit, numbers.way(), &mut place);
+    let event = if !is_in_fog {
+        meet_surface(scenery, path, &ray, hit, continues, &numbers, &mut place)
+    } else if continues {
+        PHASE
+    } else {
+        ENDS
     };
-    let mut event = LAMBERT;
-    if effects.any(Effects::FOG) && meet_fog(scenery, path, &ray, hit, numbers.way(), &mut place) {
-        event = PHASE;
-    }
-    if event != PHASE {
-        event = meet_surface(scenery, path, &ray, hit, continues, &numbers, &mut place);
-    }
     if event == ENDS {
         return false;
+    }
+    if event == PASSES {
+        return true;
     }
     if event != LEAVES && !scatter(scenery, path, &place, event, continues, &numbers) {
         return false;
@@ -162,15 +167,12 @@ fn meet_fog<T: Traversal>(
     u: f32,
     place: &mut Place,
 ) -> bool {
-    let (effects, fog) = (scenery.effects, &scenery.launch.fog);
+    let fog = &scenery.launch.fog;
     let (from, to) = fog.span(path.origin, path.direction, hit.t);
     let at = from + fog.sample_distance(u);
     let is_in_fog = (from < to) & (at < to);
     if is_in_fog {
         place.surface.point = ray.at(at);
-        if effects.any(Effects::GLASS) {
-            path.throughput *= absorb(path.absorption, at);
-        }
         path.throughput *= fog.albedo;
     }
     is_in_fog
@@ -194,15 +196,20 @@ fn meet_surface<T: Traversal>(
         return ENDS;
     }
     if effects.any(Effects::GLASS) {
-        path.throughput *= absorb(path.absorption, hit.t);
+        path.throughput *= absorb(path.medium(scenery).absorption, hit.t);
     }
     let index = hit.sphere as usize;
     let sphere = scenery.sphere(index, path.time);
-    let surface = Surface::at(ray, hit.t, sphere);
+    let mut surface = Surface::at(ray, hit.t, sphere);
+    if effects.any(Effects::LARGE_SPHERES) {
+        surface = surface.refined(ray, hit.t, sphere);
+    }
     let material = material_of(index, scenery.material_ids, scenery.materials);
     place.surface = surface;
     place.material = material;
-    if path.bounces == 0 {
+    place.radius = sphere.radius();
+    place.sphere = hit.sphere;
+    if path.bounces() == 0 {
         path.depth = hit.t;
     }
     if effects.any(Effects::EMISSION) && material.kind == Material::EMISSIVE {
@@ -212,10 +219,20 @@ fn meet_surface<T: Traversal>(
     if effects.any(Effects::GLASS)
         && (material.kind == Material::GLASS) | (material.kind == Material::BUBBLE)
     {
+        let mut beyond = path.media;
+        if effects.any(Effects::NESTED_GLASS) {
+            beyond = path.media_beyond(scenery, place);
+            if passes_covered_glass(path, place, beyond) {
+                return PASSES;
+            }
+        }
         if continues {
-            cross_glass(path, &surface, &material, numbers.choice());
+            cross_glass(scenery, path, place, beyond, numbers.choice());
             return LEAVES;
         }
+        return ENDS;
+    }
+    if path.bounces() > scenery.most_bounces() {
         return ENDS;
     }
     if effects.any(Effects::MIRROR.and(Effects::ROUGH_METAL)) && material.kind == Material::METAL {
@@ -225,7 +242,7 @@ fn meet_surface<T: Traversal>(
                 let facing = surface.facing(path.direction);
                 path.throughput *= schlick(material.color, -facing.dot(path.direction));
                 let direction = unit(reflect(path.direction, facing));
-                path.leave(&surface, direction, 0.0);
+                path.leave(place, direction, 0.0);
                 return LEAVES;
             }
             return ENDS;
@@ -250,7 +267,9 @@ fn scatter<T: Traversal>(
     numbers: &VertexNumbers,
 ) -> bool {
     let effects = scenery.effects;
-    let Place { surface, material } = place;
+    let Place {
+        surface, material, ..
+    } = place;
     let facing = surface.facing(path.direction);
     if effects.any(Effects::HEADLAMP) && lobe == LAMBERT {
         // Lambert with the lamp at the eye.
@@ -258,6 +277,11 @@ fn scatter<T: Traversal>(
         return false;
     }
     let continues = continues & ((lobe != LAMBERT) | effects.any(Effects::INTERREFLECTION));
+    // After the last bounce a path can only arrive at a light, and lights that are sampled are not
+    // looked for again.
+    let is_last = path.bounces() == scenery.most_bounces();
+    let seeks_all = effects.any(Effects::SOFT_SHADOWS) | !effects.any(Effects::EMISSION);
+    let continues = continues & !(is_last & seeks_all & (scenery.launch.has_plain_sky == 0));
     let vertex = Vertex::new(scenery, lobe, path.direction, facing, material);
     if effects.any(Effects::HEADLAMP) && effects.any(Effects::PLASTIC) && lobe == PLASTIC {
         // The lamp has the same power as for Lambert. The coat also reflects the background.
@@ -266,12 +290,12 @@ fn scatter<T: Traversal>(
     }
     let seeks = effects.any(SEEKING) && !scenery.lights.is_empty();
     if seeks {
-        let light = light_from_seeking(scenery, path, surface, &vertex, continues, numbers);
+        let light = light_from_seeking(scenery, path, place, &vertex, continues, numbers);
         path.radiance += path.throughput * light;
     }
     if effects.any(Effects::AMBIENT_OCCLUSION) && lobe == LAMBERT {
         let direction = cosine_hemisphere(facing, numbers.direction());
-        let light = ambient_light(scenery, path.time, surface, direction);
+        let light = ambient_light(scenery, path.time, place, direction);
         path.radiance += path.throughput * material.color * light;
         return false;
     }
@@ -286,6 +310,6 @@ fn scatter<T: Traversal>(
         return false;
     }
     path.throughput *= value / density;
-    path.leave(surface, direction, if seeks { density } else { 0.0 });
+    path.leave(place, direction, if seeks { density } else { 0.0 });
     true
 }

@@ -81,7 +81,7 @@ layouts! {
     "Sky.sun_direction" = offset_of!(Sky, sun_direction);
     "Sky.sun_height" = offset_of!(Sky, sun_height);
     "Sky.sun_radiance" = offset_of!(Sky, sun_radiance);
-    "Sky.padding" = offset_of!(Sky, padding);
+    "Sky.environment_turn" = offset_of!(Sky, environment_turn);
     "Sky.environment_size" = offset_of!(Sky, environment_size);
     "size of Fog" = size_of::<Fog>();
     "Fog.center" = offset_of!(Fog, center);
@@ -106,7 +106,9 @@ layouts! {
     "PathLaunch.sphere_light_probability" = offset_of!(PathLaunch, sphere_light_probability);
     "PathLaunch.called_effects" = offset_of!(PathLaunch, called_effects);
     "PathLaunch.has_ambient_sky" = offset_of!(PathLaunch, has_ambient_sky);
+    "PathLaunch.has_plain_sky" = offset_of!(PathLaunch, has_plain_sky);
     "PathLaunch.padding" = offset_of!(PathLaunch, padding);
+    "PathLaunch.glass_at_eye" = offset_of!(PathLaunch, glass_at_eye);
     "PathLaunch.sky" = offset_of!(PathLaunch, sky);
     "PathLaunch.fog" = offset_of!(PathLaunch, fog);
     "size of Accumulator" = size_of::<Accumulator>();

@@ -1149,6 +1149,18 @@ pub const CALLS: &[Call] = &[
             &s.draw(),
         ))
     }),
+    Call::new("spherule::scene::world::World::glass_around", |s| {
+        seen(spherule::scene::world::World::glass_around(
+            &s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule::scene::world::World::overlapping_glass", |s| {
+        seen(spherule::scene::world::World::overlapping_glass(&s.draw()))
+    }),
+    Call::new("spherule::scene::world::World::without_copies", |s| {
+        seen(spherule::scene::world::World::without_copies(&s.draw()))
+    }),
     Call::new("spherule::threads::most", |_| {
         seen(spherule::threads::most())
     }),
@@ -1251,6 +1263,12 @@ pub const CALLS: &[Call] = &[
         "spherule_kernel::accel::brute::MovingSpheres as spherule_kernel::accel::brute::Spheres::count",
         |s| {
             seen(<spherule_kernel::accel::brute::MovingSpheres as spherule_kernel::accel::brute::Spheres>::count(&s.draw::<odd::OddMovingSpheres>().get()))
+        },
+    ),
+    Call::new(
+        "spherule_kernel::accel::brute::MovingSpheres as spherule_kernel::accel::brute::Spheres::is_left",
+        |s| {
+            seen(<spherule_kernel::accel::brute::MovingSpheres as spherule_kernel::accel::brute::Spheres>::is_left(&s.draw::<odd::OddMovingSpheres>().get(), s.draw()))
         },
     ),
     Call::new("spherule_kernel::accel::brute::MovingSpheres::read", |s| {
@@ -1740,6 +1758,14 @@ pub const CALLS: &[Call] = &[
     Call::new("spherule_kernel::cull::frustum::Plane::to_vec4", |s| {
         seen(spherule_kernel::cull::frustum::Plane::to_vec4(s.draw()))
     }),
+    Call::new("spherule_kernel::cull::frustum::inward_normal", |s| {
+        seen(spherule_kernel::cull::frustum::inward_normal::<f32>(
+            s.draw(),
+            s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
     Call::new("spherule_kernel::effects::Effects::and", |s| {
         seen(spherule_kernel::effects::Effects::and(s.draw(), s.draw()))
     }),
@@ -1922,6 +1948,21 @@ pub const CALLS: &[Call] = &[
     Call::new("spherule_kernel::lane::Lane3::of", |s| {
         seen(spherule_kernel::lane::Lane3::<f32>::of(s.draw()))
     }),
+    Call::new("spherule_kernel::lane::Lane3::plus", |s| {
+        seen(spherule_kernel::lane::Lane3::<f32>::plus(
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::lane::Lane3::scaled", |s| {
+        seen(spherule_kernel::lane::Lane3::<f32>::scaled(
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::lane::Lane3::to_vec3", |s| {
+        seen(spherule_kernel::lane::Lane3::<f32>::to_vec3(s.draw()))
+    }),
     Call::new("spherule_kernel::light::Light::environment", |_| {
         seen(spherule_kernel::light::Light::environment())
     }),
@@ -2002,6 +2043,9 @@ pub const CALLS: &[Call] = &[
             s.draw(),
             s.draw(),
         ))
+    }),
+    Call::new("spherule_kernel::material::Material::is_glass", |s| {
+        seen(spherule_kernel::material::Material::is_glass(&s.draw()))
     }),
     Call::new("spherule_kernel::material::Material::metal", |s| {
         seen(spherule_kernel::material::Material::metal(
@@ -2468,6 +2512,14 @@ pub const CALLS: &[Call] = &[
             &s.draw(),
         ))
     }),
+    Call::new("spherule_kernel::precision::root::root_within", |s| {
+        seen(spherule_kernel::precision::root::root_within::<f32>(
+            s.draw(),
+            s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
     Call::new(
         "spherule_kernel::precision::textbook::Textbook as spherule_kernel::precision::root::Precision::intersect",
         |s| {
@@ -2584,6 +2636,9 @@ pub const CALLS: &[Call] = &[
             s.draw(),
         ))
     }),
+    Call::new("spherule_kernel::surface::Surface::error", |s| {
+        seen(spherule_kernel::surface::Surface::error(s.draw()))
+    }),
     Call::new("spherule_kernel::surface::Surface::facing", |s| {
         seen(spherule_kernel::surface::Surface::facing(
             &s.draw(),
@@ -2593,6 +2648,14 @@ pub const CALLS: &[Call] = &[
     Call::new("spherule_kernel::surface::Surface::leave", |s| {
         seen(spherule_kernel::surface::Surface::leave(
             &s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::surface::Surface::refined", |s| {
+        seen(spherule_kernel::surface::Surface::refined(
+            s.draw(),
+            &s.draw(),
+            s.draw(),
             s.draw(),
         ))
     }),
@@ -3161,7 +3224,9 @@ impl Odd for spherule_kernel::film::PathLaunch {
             sphere_light_probability: Odd::odd(s),
             called_effects: Odd::odd(s),
             has_ambient_sky: Odd::odd(s),
+            has_plain_sky: Odd::odd(s),
             padding: Odd::odd(s),
+            glass_at_eye: Odd::odd(s),
             sky: Odd::odd(s),
             fog: Odd::odd(s),
         }
@@ -3226,7 +3291,7 @@ impl Odd for spherule_kernel::light::sky::Sky {
             sun_direction: Odd::odd(s),
             sun_height: Odd::odd(s),
             sun_radiance: Odd::odd(s),
-            padding: Odd::odd(s),
+            environment_turn: Odd::odd(s),
             environment_size: Odd::odd(s),
             padding_end: Odd::odd(s),
         }

@@ -692,11 +692,17 @@ impl Odd for Material {
 
 /// Owns what [`MovingSpheres`] borrow.
 #[derive(Debug)]
-pub struct OddMovingSpheres(Vec<Sphere>, Vec<Vec4>, f32, Effects);
+pub struct OddMovingSpheres(Vec<Sphere>, Vec<Vec4>, f32, Effects, u32);
 
 impl Odd for OddMovingSpheres {
     fn odd(s: &mut Source) -> Self {
-        Self(Odd::odd(s), Odd::odd(s), Odd::odd(s), Odd::odd(s))
+        Self(
+            Odd::odd(s),
+            Odd::odd(s),
+            Odd::odd(s),
+            Odd::odd(s),
+            Odd::odd(s),
+        )
     }
 }
 
@@ -708,6 +714,7 @@ impl OddMovingSpheres {
             velocities: &self.1,
             time: self.2,
             effects: self.3,
+            left: self.4,
         }
     }
 }
@@ -962,6 +969,7 @@ fn small_scene(s: &mut Source) -> Scene {
             texels: vec![second; 8],
         });
         scene.sky = Some(Surroundings {
+            rotation: 0.0,
             horizon: first,
             zenith: second,
             sun: s.one_in(2).then_some(sun),
@@ -1002,6 +1010,7 @@ fn make_parts_odd(scene: &mut Scene, s: &mut Source) {
             4 => scene.lens = Odd::odd(s),
             5 => {
                 scene.sky = Some(Surroundings {
+                    rotation: Odd::odd(s),
                     horizon: Odd::odd(s),
                     zenith: Odd::odd(s),
                     sun: Odd::odd(s),

@@ -1,0 +1,108 @@
+//! Moves a scene that is far from the origin to it, without an error.
+//!
+//! Light paths start at points on surfaces, and a point at the coordinate 10⁶ is 0.06 off in 32-bit
+//! floats. Near the origin it is not. The difference of two floats of about the same size is exact,
+//! so that most scenes can be moved without changing anything; those that cannot stay where they
+//! are.
+
+use glam::Vec3;
+use spherule_kernel::Sphere;
+
+use crate::scene::{Scene, View};
+
+/// A scene is moved if what it shows is this many times as far from the origin as from the eye.
+const FAR: f32 = 64.0;
+
+/// The scene, moved so that what its camera looks at is near the origin; `None` if it is near it
+/// already, or if some coordinate would be rounded.
+pub(super) fn rebased(scene: &Scene) -> Option<Scene> {
+    let view = scene.view_or_framed();
+    let distance = view.eye.distance(view.target);
+    let is_far = view.target.abs().max_element() > FAR * distance;
+    if !(is_far && distance > 0.0) {
+        return None;
+    }
+    // Of few bits, so that differences have no more bits than the coordinates have.
+    let unit = distance.log2().ceil().exp2();
+    let origin = (view.target / unit).round() * unit;
+    let moved = |point: Vec3| {
+        let difference = point - origin;
+        let is_exact = difference.as_dvec3() == point.as_dvec3() - origin.as_dvec3();
+        is_exact.then_some(difference)
+    };
+    let (eye, target) = (moved(view.eye)?, moved(view.target)?);
+    // Where a sphere in motion is would be rounded in another place.
+    if !scene.world.velocities.is_empty() {
+        return None;
+    }
+    let spheres = scene.world.spheres.iter();
+    let spheres: Option<Vec<Sphere>> = spheres
+        .map(|sphere| Some(Sphere::new(moved(sphere.center())?, sphere.radius())))
+        .collect();
+    let spheres = spheres?;
+    let mut scene = scene.clone();
+    scene.world.spheres = spheres;
+    for light in &mut scene.lights {
+        light.position = moved(light.position)?;
+    }
+    if let Some(fog) = &mut scene.fog
+        && fog.medium.radius > 0.0
+    {
+        fog.medium.center = moved(fog.medium.center)?;
+    }
+    scene.view = Some(View {
+        eye,
+        target,
+        ..view
+    });
+    Some(scene)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{PointLight, World};
+    use spherule_kernel::Material;
+
+    fn scene(at: Vec3) -> Scene {
+        let mut world = World::default();
+        let white = world.add_material(Material::diffuse(Vec3::ONE));
+        world.add(Sphere::new(at, 0.5), white);
+        world.add(Sphere::new(at - Vec3::Y * 6_371_000.0, 6_371_000.0), white);
+        let mut scene = Scene::new(world);
+        scene.lights.push(PointLight {
+            position: at + Vec3::Y * 4.0,
+            intensity: Vec3::ONE,
+        });
+        scene.view = Some(View {
+            eye: at + Vec3::Z * 8.0,
+            target: at,
+            up: Vec3::Y,
+            vertical_fov: 40.0,
+        });
+        scene
+    }
+
+    /// Every distance stays what it was.
+    #[test]
+    fn far_scenes_move_without_an_error() {
+        let moved = rebased(&scene(Vec3::new(1e6, -1e6, 1e6))).expect("a scene");
+        let view = moved.view.expect("a view");
+        assert!(view.target.abs().max_element() <= 8.0, "{view:?}");
+        let near = scene(view.target);
+        assert_eq!(moved.world.spheres, near.world.spheres);
+        assert_eq!(moved.lights[0].position, near.lights[0].position);
+        assert_eq!(moved.view, near.view);
+    }
+
+    #[test]
+    fn others_stay() {
+        assert!(rebased(&scene(Vec3::ONE)).is_none());
+        let mut fine = scene(Vec3::splat(1e6));
+        fine.world.add(Sphere::new(Vec3::splat(0.1), 0.5), 0);
+        assert!(rebased(&fine).is_none());
+        let mut moving = scene(Vec3::splat(1e6));
+        moving.world.velocities = vec![Vec3::X; 2];
+        assert!(rebased(&moving).is_none());
+    }
+}
