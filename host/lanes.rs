@@ -4,9 +4,10 @@
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
 use fearless_simd::{
-    Select, Simd, SimdBase, SimdFloat, SimdMask, f32x8, f32x16, f64x8, mask32x8, mask32x16,
-    mask64x8,
+    Select, Simd, SimdBase, SimdFloat, SimdMask, f32x16, f64x8, mask32x16, mask64x8,
 };
+#[cfg(target_arch = "x86_64")]
+use fearless_simd::{f32x8, mask32x8};
 use glam::{Vec3, Vec4};
 use spherule_kernel::accel::slabs::BoxLane;
 use spherule_kernel::lane::{Lane, Lane3};
@@ -19,6 +20,7 @@ pub(crate) const LANES: usize = 16;
 pub(crate) struct Single16<S: Simd>(pub(crate) f32x16<S>);
 
 /// Eight 32-bit floats.
+#[cfg(target_arch = "x86_64")]
 #[derive(Clone, Copy)]
 pub(crate) struct Single8<S: Simd>(pub(crate) f32x8<S>);
 
@@ -57,6 +59,7 @@ impl<S: Simd> Single16<S> {
     }
 }
 
+#[cfg(target_arch = "x86_64")]
 impl<S: Simd> Single8<S> {
     #[inline(always)]
     pub(crate) fn splat(simd: S, value: f32) -> Self {
@@ -117,6 +120,7 @@ macro_rules! operators {
                 }
             }
 
+            #[cfg(target_arch = "x86_64")]
             impl<S: Simd> $operation for Single8<S> {
                 type Output = Self;
 
@@ -265,6 +269,7 @@ macro_rules! single {
 }
 
 single!(Single16, f32x16, mask32x16);
+#[cfg(target_arch = "x86_64")]
 single!(Single8, f32x8, mask32x8);
 
 impl<S: Simd> Lane for Double16<S> {

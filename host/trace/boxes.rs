@@ -1,5 +1,5 @@
-//! The test of all eight boxes of a node side by side, by the kernel's
-//! [`Boxes`](spherule_kernel::accel::slabs::Boxes), for any instruction set.
+//! The test of all eight boxes of a node side by side, by the kernel's [`Boxes`], for any
+//! instruction set.
 
 use fearless_simd::{Bytes, Simd, SimdBase, SimdCombine, SimdMask, f32x8, u32x4};
 use glam::{UVec4, Vec3};
