@@ -34,11 +34,6 @@ pub(crate) struct DoubleMask<S: Simd>(mask64x8<S>, mask64x8<S>);
 
 impl<S: Simd> Single16<S> {
     #[inline(always)]
-    pub(crate) fn splat(simd: S, value: f32) -> Self {
-        Self(f32x16::splat(simd, value))
-    }
-
-    #[inline(always)]
     pub(crate) fn load(simd: S, values: &[f32; LANES]) -> Self {
         Self(f32x16::load_array_ref(simd, values))
     }
@@ -46,34 +41,6 @@ impl<S: Simd> Single16<S> {
     #[inline(always)]
     pub(crate) fn store(self, values: &mut [f32; LANES]) {
         self.0.store_array(values);
-    }
-
-    /// The same vector in every lane.
-    #[inline(always)]
-    pub(crate) fn splat3(simd: S, vector: Vec3) -> Lane3<Self> {
-        Lane3 {
-            x: Self::splat(simd, vector.x),
-            y: Self::splat(simd, vector.y),
-            z: Self::splat(simd, vector.z),
-        }
-    }
-}
-
-#[cfg(target_arch = "x86_64")]
-impl<S: Simd> Single8<S> {
-    #[inline(always)]
-    pub(crate) fn splat(simd: S, value: f32) -> Self {
-        Self(f32x8::splat(simd, value))
-    }
-
-    /// The same vector in every lane.
-    #[inline(always)]
-    pub(crate) fn splat3(simd: S, vector: Vec3) -> Lane3<Self> {
-        Lane3 {
-            x: Self::splat(simd, vector.x),
-            y: Self::splat(simd, vector.y),
-            z: Self::splat(simd, vector.z),
-        }
     }
 }
 
@@ -191,6 +158,23 @@ impl<S: Simd> Not for DoubleMask<S> {
 
 macro_rules! single {
     ($single:ident, $vector:ident, $mask:ident) => {
+        impl<S: Simd> $single<S> {
+            #[inline(always)]
+            pub(crate) fn splat(simd: S, value: f32) -> Self {
+                Self($vector::splat(simd, value))
+            }
+
+            /// The same vector in every lane.
+            #[inline(always)]
+            pub(crate) fn splat3(simd: S, vector: Vec3) -> Lane3<Self> {
+                Lane3 {
+                    x: Self::splat(simd, vector.x),
+                    y: Self::splat(simd, vector.y),
+                    z: Self::splat(simd, vector.z),
+                }
+            }
+        }
+
         impl<S: Simd> Neg for $single<S> {
             type Output = Self;
 

@@ -109,6 +109,17 @@ fn mean(scene: &Scene, settings: &Settings, device: &Device) -> (f64, f64) {
     (mean, (variance / count).sqrt())
 }
 
+/// A sky of the same radiance everywhere, without a sun.
+fn even_sky(radiance: Vec3) -> Surroundings {
+    Surroundings {
+        horizon: radiance,
+        zenith: radiance,
+        sun: None,
+        rotation: 0.0,
+        image: None,
+    }
+}
+
 /// Every ground, with each direction upwards.
 fn grounds() -> impl Iterator<Item = (f32, DVec3)> {
     GROUNDS
@@ -427,13 +438,7 @@ fn eyes_in_glass_see_no_more_light() {
     let mut scene = through(&[(0.0, 1.0, Material::glass(1.5, Vec3::ZERO))], 0.0);
     scene.world.spheres.truncate(1);
     scene.world.material_ids.truncate(1);
-    scene.sky = Some(Surroundings {
-        horizon: Vec3::ONE,
-        zenith: Vec3::ONE,
-        sun: None,
-        rotation: 0.0,
-        image: None,
-    });
+    scene.sky = Some(even_sky(Vec3::ONE));
     assert_light(&scene, 1.0, "a sky");
 }
 
@@ -597,13 +602,7 @@ fn the_default_bounces_are_enough_for_hollow_glass() {
         up: Vec3::Y,
         vertical_fov: 14.0,
     });
-    scene.sky = Some(Surroundings {
-        horizon: Vec3::ONE,
-        zenith: Vec3::ONE,
-        sun: None,
-        rotation: 0.0,
-        image: None,
-    });
+    scene.sky = Some(even_sky(Vec3::ONE));
     scene.sampling.samples = Some(64);
     for (name, device) in devices() {
         let (lost, _) = mean(&scene, &settings(), device);
@@ -632,13 +631,7 @@ fn copies_of_spheres_change_nothing() {
         }
         let mut scene = Scene::new(world);
         (scene.width, scene.height) = (32, 32);
-        scene.sky = Some(Surroundings {
-            horizon: Vec3::ONE,
-            zenith: Vec3::ONE,
-            sun: None,
-            rotation: 0.0,
-            image: None,
-        });
+        scene.sky = Some(even_sky(Vec3::ONE));
         scene.sampling.samples = Some(16);
         let mut doubled = scene.clone();
         doubled.world.append(&scene.world);

@@ -17,7 +17,7 @@ use super::aabb::{Aabb, Item};
 use super::quantise::{corner_of, put_sides, sides};
 use super::split::{Part, SHARED, split, split_along, widest_axis};
 use super::tree::{BuiltTree, Nodes};
-use crate::scene::world::GRAIN;
+use crate::scene::world::{GRAIN, bits_of};
 
 /// The most spheres in a node that has no nodes as children.
 const FULL: usize = Node::WIDTH * Node::MAX_LEAF;
@@ -138,13 +138,11 @@ struct Given<'a> {
 }
 
 impl Given<'_> {
-    /// Bits that are the same exactly for equal spheres.
+    /// [`bits_of`] the sphere with this index.
     fn key(&self, index: u32) -> [u32; 7] {
         let sphere = &self.spheres[index as usize];
         let velocity = self.velocities.get(index as usize).copied();
-        let [x, y, z] = sphere.center().to_array().map(f32::to_bits);
-        let [u, v, w] = velocity.unwrap_or_default().to_array().map(f32::to_bits);
-        [x, y, z, sphere.radius().to_bits(), u, v, w]
+        bits_of(sphere, velocity.unwrap_or_default())
     }
 }
 

@@ -6,16 +6,14 @@ use glam::Vec3;
 use rayon::prelude::*;
 
 use super::World;
-use super::world::GRAIN;
+use super::world::{GRAIN, bits_of};
 
 impl World {
-    /// Bits that are the same exactly for equal spheres that move alike.
+    /// [`bits_of`] the sphere with this index.
     fn key(&self, index: usize) -> [u32; 7] {
         let sphere = &self.spheres[index];
         let velocity = self.velocities.get(index).copied().unwrap_or_default();
-        let [x, y, z] = sphere.center().to_array().map(f32::to_bits);
-        let [u, v, w] = velocity.to_array().map(f32::to_bits);
-        [x, y, z, sphere.radius().to_bits(), u, v, w]
+        bits_of(sphere, velocity)
     }
 
     /// The world without copies: of equal spheres that move alike, the first is kept. `None` if

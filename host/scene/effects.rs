@@ -258,10 +258,14 @@ impl Scene {
 
     /// What large spheres call for, if light paths with `others` leave them.
     fn large_spheres(&self, others: Effects) -> Option<Called> {
+        // A plain scene has no need of two more passes over its spheres.
+        if others.is_empty() {
+            return None;
+        }
         let (largest, smallest) = (self.largest_size(), self.smallest_length());
         // How far `Surface::at` may put a point beside the sphere.
         let is_off = Surface::error(largest) > smallest * VISIBLE;
-        (is_off && !others.is_empty()).then(|| {
+        is_off.then(|| {
             let by = format!(
                 "a sphere reaches {largest:.1e} from the origin, and the smallest length is {smallest:.1e}"
             );

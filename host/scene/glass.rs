@@ -116,18 +116,14 @@ impl World {
             let index = one.material.parameter * around;
             indices.push(index);
             let id = self.material_ids[one.index];
-            world.material_ids[one.index] =
-                *made.entry((id, index.to_bits())).or_insert_with(|| {
-                    world.materials.push(Material {
-                        parameter: index,
-                        ..one.material
-                    });
-                    world.materials.len() as u32 - 1
-                });
+            let absolute = *made.entry((id, index.to_bits())).or_insert_with(|| {
+                world.add_material(Material {
+                    parameter: index,
+                    ..one.material
+                })
+            });
+            world.material_ids[one.index] = absolute;
         }
-        world
-            .material_names
-            .resize(world.materials.len(), String::new());
         world
     }
 

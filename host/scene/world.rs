@@ -33,6 +33,13 @@ pub struct World {
     pub velocities: Vec<Vec3>,
 }
 
+/// Bits that are the same exactly for equal spheres that move alike.
+pub(crate) fn bits_of(sphere: &Sphere, velocity: Vec3) -> [u32; 7] {
+    let [x, y, z] = sphere.center().to_array().map(f32::to_bits);
+    let [u, v, w] = velocity.to_array().map(f32::to_bits);
+    [x, y, z, sphere.radius().to_bits(), u, v, w]
+}
+
 impl World {
     /// Adds a material and returns its index.
     pub fn add_material(&mut self, material: Material) -> u32 {

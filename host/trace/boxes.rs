@@ -60,18 +60,22 @@ impl<S: Simd> Planes<S> {
             let words = u32x4::load_array_ref(simd, words.as_ref());
             Single8((words << 16).combine(words).bitcast::<f32x8<S>>())
         };
-        let [x, y, z] = self.near_rows;
-        let near = Lane3 {
-            x: row(x),
-            y: row(y),
-            z: row(z),
-        };
-        let far = Lane3 {
-            x: row(3 - x),
-            y: row(5 - y),
-            z: row(7 - z),
-        };
+        let (near, far) = near_and_far(self.near_rows, row);
         let (enter, leave) = boxes.enter_and_leave(near, far);
         (enter.simd_le(leave).to_bitmask() as u32, enter.0)
     }
+}
+
+/// The near and the far sides of boxes, from which of their six rows are near.
+#[inline(always)]
+pub(super) fn near_and_far<L>(
+    [x, y, z]: [usize; 3],
+    row: impl Fn(usize) -> L,
+) -> (Lane3<L>, Lane3<L>) {
+    let of = |x, y, z| Lane3 {
+        x: row(x),
+        y: row(y),
+        z: row(z),
+    };
+    (of(x, y, z), of(3 - x, 5 - y, 7 - z))
 }

@@ -13,10 +13,11 @@ use std::mem::MaybeUninit;
 
 use fearless_simd::SimdMask;
 use spherule_kernel::accel::slabs::{Boxes, Slabs};
-use spherule_kernel::lane::{Lane as _, Lane3};
+use spherule_kernel::lane::Lane as _;
 use spherule_kernel::{Hit, Ray, Rung, Sphere};
 
 use super::avx512::{Avx512, LANES};
+use super::boxes::near_and_far;
 use super::levels::{Group, Levels};
 use super::search::{Query, Resting};
 use super::sixteen::{RayPlanes, Sixteen, end_of, is_plain};
@@ -333,21 +334,12 @@ impl Group {
     /// Which boxes a ray meets, a bit each, and where it enters them.
     #[inline(always)]
     fn meets(&self, Avx512(simd): Avx512, planes: &RayPlanes) -> (__mmask16, __m512) {
-        let side = |row: u32| {
+        let side = |row: usize| {
             // SAFETY: near rows are 0 or 3, 1 or 4, 2 or 5, and far ones the others.
-            Single16::load(simd, unsafe { self.0.get_unchecked(row as usize) })
+            Single16::load(simd, unsafe { self.0.get_unchecked(row) })
         };
-        let [x, y, z] = planes.near_rows;
-        let near = Lane3 {
-            x: side(x),
-            y: side(y),
-            z: side(z),
-        };
-        let far = Lane3 {
-            x: side(3 - x),
-            y: side(5 - y),
-            z: side(7 - z),
-        };
+        let rows = planes.near_rows.map(|row| row as usize);
+        let (near, far) = near_and_far(rows, side);
         let boxes = Boxes {
             inverse: Single16::splat3(simd, planes.inverse),
             near: Single16::splat3(simd, planes.near),

@@ -49,10 +49,12 @@ impl Prepared {
     ///
     /// As [`whole_image`].
     pub fn new(scene: &Scene, choice: EffectChoice, acceleration: Acceleration) -> Result<Self> {
-        scene.validate()?;
+        let mut whole = whole_image(scene)?;
         let moved = rebased(scene);
         let scene = moved.as_ref().unwrap_or(scene);
-        let whole = whole_image(scene)?;
+        if moved.is_some() {
+            whole = whole_image(scene)?;
+        }
         let called = scene.effects();
         let shown = choice.shown(called);
         let view = scene.view_or_framed();
