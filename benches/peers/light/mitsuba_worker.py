@@ -9,6 +9,7 @@ keeps compiled kernels there.
 """
 
 import json
+import os
 import pathlib
 import resource
 import sys
@@ -18,6 +19,9 @@ import drjit as dr
 import mitsuba as mi
 import numpy as np
 
+# Mitsuba writes its warnings to the standard output, which is kept for the answers.
+ANSWERS = os.fdopen(os.dup(1), "w")
+os.dup2(2, 1)
 JITS = ("llvm_ad_rgb", "cuda_ad_rgb")
 
 
@@ -69,16 +73,20 @@ def main():
     start = time.perf_counter()
     scene = as_mitsuba.load(SCENES[name], pathlib.Path(folder), width, height, samplers, samples)
     load = time.perf_counter() - start
+    for sampler, sensor in zip(samplers, scene.sensors()):
+        if sensor.sampler().sample_count() != samples:
+            count = sensor.sampler().sample_count()
+            sys.exit(f"error: {sampler} takes {count} samples, not {samples}: ask for a square number of samples")
     warm = warm_up(scene, len(samplers), samples) if variant in JITS else []
     if any(line["again"] for line in warm):
-        sys.exit("Mitsuba compiles for every seed, so that its times would count compiling")
+        sys.exit("error: Mitsuba compiles for every seed, so that its times would count compiling")
     dr.set_flag(dr.JitFlag.KernelHistory, False)
-    print(json.dumps({"load": load, "warm": warm, "version": mi.__version__}), flush=True)
+    print(json.dumps({"load": load, "warm": warm, "version": mi.__version__}), file=ANSWERS, flush=True)
     for line in sys.stdin:
         sensor, seed, path = line.split(maxsplit=2)
         image, seconds = render(scene, int(sensor), int(seed), samples)
         np.save(path.strip(), image)
-        print(json.dumps(seconds), flush=True)
+        print(json.dumps(seconds), file=ANSWERS, flush=True)
 
 
 main()

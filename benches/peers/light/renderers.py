@@ -17,6 +17,10 @@ from peers import Missing
 
 HERE = pathlib.Path(__file__).resolve().parent
 VARIANTS = {"llvm": "llvm_ad_rgb", "scalar": "scalar_rgb", "cuda": "cuda_ad_rgb"}
+NEEDS = {  # if its backend does not start
+    "llvm": "it needs LLVM's library; DRJIT_LIBLLVM_PATH may name it",
+    "cuda": "it needs an NVIDIA GPU, and OptiX in its driver",
+}
 OLDEST_LLVM = 17  # before it, LLVM has no code for an instruction of Mitsuba's kernels, and aborts
 LLVM_PLACES = ("/usr/lib/*-linux-gnu", "/usr/lib", "/usr/lib64", "/usr/lib/llvm-*/lib", "/opt/homebrew/opt/llvm/lib")
 
@@ -89,9 +93,11 @@ class Mitsuba:
             return json.loads(line)
         self.process.wait()
         self.errors.seek(0)
-        lines = [line.strip() for line in self.errors.read().splitlines() if line.strip()]
+        text = re.sub(r"\x1b\[\d*m", "", self.errors.read())  # without colours
+        lines = [line.strip() for line in text.splitlines() if line.strip()]
         errors = [line for line in lines if "error" in line.lower()] or lines or ["it ended without a word"]
-        raise Missing(f"Mitsuba's {VARIANTS[self.variant]}: {errors[0]}")
+        need = f"; {NEEDS[self.variant]}" if "backend" in errors[0] else ""
+        raise Missing(f"{VARIANTS[self.variant]}: {errors[0]}{need}")
 
     def render(self, sampler, seed):
         path = self.folder / f"{self.variant}.npy"

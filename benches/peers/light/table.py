@@ -43,7 +43,7 @@ def disagreements(results):
     """For each scene without a ratio, whose means differ, and by how much."""
     return [
         f"{result['scene']} has no ratio: the mean of {name} is {100 * line['share']:+.2f} % off spherule's "
-        f"({line['image_score']:+.1f} standard errors; tiles {line['tile_score']:.2f})"
+        f"({line['image_score']:+.1f} standard errors; tiles {line['tile_score']:.2f}, at most {line['most_tile_score']:.2f})"
         for result in results
         for name, line in result["agreement"].items()
         if not line["agrees"]
