@@ -46,7 +46,8 @@ class Spherule:
         process.returncode = os.waitstatus_to_exitcode(status)
         if process.returncode:
             raise Missing(f"spherule: {complaint.strip() or process.returncode}")
-        return image, {"wall": json.loads(stats.read_text())["seconds"]["trace"], "cpu": usage.ru_utime}
+        self.stats = json.loads(stats.read_text())
+        return image, {"wall": self.stats["seconds"]["trace"], "cpu": usage.ru_utime}
 
     def render(self, seed):
         """The image of a seed, and the seconds of tracing and of the CPU.
@@ -56,11 +57,11 @@ class Spherule:
         """
         path, seconds = self.run(seed, self.options.samples)
         samples = self.options.samples
-        seconds["cpu"] = (seconds["cpu"] - self.idle_cpu) * samples / max(samples - 1, 1)
+        seconds["cpu"] = (seconds["cpu"] - self.idle_cpu) * samples / (samples - 1)
         return images.read(path), seconds
 
     def about(self):
-        return {}
+        return {key: self.stats[key] for key in ("device", "precision", "effects")}
 
     def close(self):
         pass
