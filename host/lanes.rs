@@ -53,11 +53,9 @@ impl<S: Simd> Double16<S> {
 
     /// Widens sixteen 32-bit floats.
     #[inline(always)]
-    pub(crate) fn widened(simd: S, values: &[f32; LANES]) -> Self {
-        Self(
-            f64x8::from_fn(simd, |lane| f64::from(values[lane])),
-            f64x8::from_fn(simd, |lane| f64::from(values[8 + lane])),
-        )
+    pub(crate) fn widened(values: Single16<S>) -> Self {
+        let (first, last) = values.0.simd.widen_f32x16(values.0);
+        Self(first, last)
     }
 
     /// Rounds to 32 bits.

@@ -644,3 +644,45 @@ fn copies_of_spheres_change_nothing() {
         }
     }
 }
+
+/// Eighty lamps and points in a row, of which each place is near to few: it gets what all give it,
+/// and since those few are chosen most of the time, without much noise.
+#[test]
+fn many_lamps_give_what_each_gives() {
+    let mut place = Place::on(1e3, UPS[1]);
+    let world = &mut place.scene.world;
+    let glow = world.add_material(Material::emissive(Vec3::ONE));
+    let (at, up, along) = (place.at, place.up, place.along);
+    let mut expected = 0.0;
+    for i in 0..80 {
+        let (x, height) = (f64::from(i) * 0.5 - 3.0, 0.4 + 0.01 * f64::from(i % 7));
+        let center = (at + along * x + up * height).as_vec3();
+        let towards = center.as_dvec3() - at;
+        let squared = towards.length_squared();
+        let cosine = towards.dot(up) / squared.sqrt();
+        let radius = 0.02 + 0.001 * (i % 5) as f32;
+        if i % 4 == 0 {
+            let intensity = 1e-3;
+            place.scene.lights.push(PointLight {
+                position: center,
+                intensity: Vec3::splat(intensity),
+            });
+            expected += f64::from(intensity) * cosine / squared / std::f64::consts::PI;
+        } else {
+            place.scene.world.add(Sphere::new(center, radius), glow);
+            expected += f64::from(radius).powi(2) / squared * cosine;
+        }
+    }
+    place.look_from(0.0, 0.2, 0.0, 0.25);
+    assert!(place.scene.effects().any(Effects::MANY_LIGHTS));
+    assert_light(&place.scene, expected, "many lamps");
+    // By power alone the noise is 24 % here.
+    place.scene.sampling.samples = Some(16);
+    for (name, device) in devices() {
+        let (mean, error) = mean(&place.scene, &settings(), device);
+        let pixels = f64::from(place.scene.width * place.scene.height);
+        let noise = error * pixels.sqrt() / mean;
+        println!("{name}: noise {noise}");
+        assert!(noise < 0.12, "{name}: {noise}");
+    }
+}

@@ -583,10 +583,10 @@ mod tests {
                 ];
                 let [nearest, any, all] = &mut by_several;
                 let in_tree = Single::new(rung, built.nodes.tree(), levels.as_ref());
-                in_tree.trace::<false, _>(&rays, spheres, |index, hit| nearest[index] = hit);
-                in_tree.trace::<true, _>(&rays, spheres, |index, hit| any[index] = hit);
+                in_tree.trace::<false>(&rays, &[], spheres, |index, hit| nearest[index] = hit);
+                in_tree.trace::<true>(&rays, &[], spheres, |index, hit| any[index] = hit);
                 let in_none = Single::new(rung, NodeTree::NONE, None);
-                in_none.trace::<false, _>(&rays, spheres, |index, hit| all[index] = hit);
+                in_none.trace::<false>(&rays, &[], spheres, |index, hit| all[index] = hit);
                 let rung = rung.to_u32();
                 for (index, ray) in rays.iter().enumerate() {
                     let brute = nearest_hit_in(rung, ray, spheres, 0, u32::MAX);

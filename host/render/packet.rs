@@ -555,9 +555,9 @@ impl Packet {
             },
             Double16::splat(simd, sphere.radius().into()),
             Lane3 {
-                x: Double16::widened(simd, &self.x[group].0),
-                y: Double16::widened(simd, &self.y[group].0),
-                z: Double16::widened(simd, &self.z[group].0),
+                x: Double16::widened(Single16::load(simd, &self.x[group].0)),
+                y: Double16::widened(Single16::load(simd, &self.y[group].0)),
+                z: Double16::widened(Single16::load(simd, &self.z[group].0)),
             },
         );
         let meets = quadratic.meets().narrowed(simd);

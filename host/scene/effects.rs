@@ -152,7 +152,15 @@ const CALLS: &[(Effects, CalledBy)] = &[
             "the glass of spheres {first} and {second} overlaps"
         ))
     }),
+    (Effects::MANY_LIGHTS, |asked| {
+        let lights = asked.scene.lights.len() + asked.count_of_glowing();
+        let is_many = asked.seeks_light() && lights >= MANY;
+        is_many.then(|| format!("{lights} lights"))
+    }),
 ];
+
+/// So many lights are chosen by what they may give to a place, rather than by their power alone.
+const MANY: usize = 8;
 
 /// The largest share of a scene's smallest length by which points may be beside their spheres.
 const VISIBLE: f32 = 1.0 / 256.0;
@@ -190,6 +198,22 @@ impl<'a> Asked<'a> {
     fn seeks_light(&self) -> bool {
         let surface = self.diffuse.or(self.rough).or(self.plastic);
         surface.is_some() || self.scene.fog.is_some()
+    }
+
+    /// How many spheres glow.
+    fn count_of_glowing(&self) -> usize {
+        let world = &self.scene.world;
+        let glows: Vec<bool> = world
+            .materials
+            .iter()
+            .map(|material| material.kind == Material::EMISSIVE)
+            .collect();
+        if self.glow.is_none() {
+            return 0;
+        }
+        let ids = world.material_ids.iter();
+        ids.filter(|id| glows.get(**id as usize) == Some(&true))
+            .count()
     }
 
     fn sun(&self) -> Option<Sun> {

@@ -77,7 +77,7 @@ impl CpuTracer {
         hits.par_chunks_mut(GRAIN)
             .zip(rays.par_chunks(GRAIN))
             .for_each(|(hits, rays)| {
-                single.trace::<false, _>(rays, spheres, |index, mut hit| {
+                single.trace::<false>(rays, &[], spheres, |index, mut hit| {
                     if let Some(given) = self.order.get(hit.sphere as usize) {
                         hit.sphere = *given;
                     }
@@ -95,7 +95,7 @@ impl CpuTracer {
             .par_chunks_mut(GRAIN)
             .zip(rays.par_chunks(GRAIN))
             .for_each(|(occluded, rays)| {
-                single.trace::<true, _>(rays, spheres, |index, hit| {
+                single.trace::<true>(rays, &[], spheres, |index, hit| {
                     occluded[index] = u32::from(hit.is_some());
                 });
             });

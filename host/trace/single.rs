@@ -5,29 +5,32 @@
 //! the nearest sphere at the end, and for those that [`bounds`](spherule_kernel::cull::bounds)
 //! leave open. With AVX2, which is detected at run time, the eight boxes of a node are tested at
 //! once, too; without it the kernel's walk is used. With AVX-512, rays in worlds that are not too
-//! large go through [`Levels`] instead, sixteen at a time.
+//! large go through [`Levels`] instead, sixteen at a time. Many rays among few spheres are tested
+//! side by side.
 
+use fearless_simd::Level;
 use spherule_kernel::accel::brute::MovingSpheres;
 use spherule_kernel::accel::node::Tree;
 use spherule_kernel::accel::traversal::Traversal;
 use spherule_kernel::accel::walk::{is_occluded_in_tree, nearest_hit_in_tree};
-use spherule_kernel::{Hit, Ray, Rung};
+use spherule_kernel::{Effects, Hit, Ray, Rung, Sphere};
 
 #[cfg(target_arch = "x86_64")]
 use super::avx512::Avx512;
+use super::few;
 use super::levels::Levels;
-use super::search::{Query, Resting};
+use super::search::{Query, Resting, left};
 #[cfg(target_arch = "x86_64")]
 use super::stream;
 #[cfg(target_arch = "x86_64")]
 use super::walk::{self, Features};
-#[cfg(target_arch = "x86_64")]
 use crate::cpu::InstructionSet;
 
 /// Finds the hits of rays on one rung, in a tree or without one.
 #[derive(Clone, Copy, Debug)]
 pub struct Single<'a> {
     query: Query<'a>,
+    level: Level,
     /// The proof that the machine has them.
     #[cfg(target_arch = "x86_64")]
     features: Option<Features>,
@@ -49,6 +52,9 @@ impl<'a> Single<'a> {
         let _ = levels;
         Self {
             query: Query::new(rung, tree),
+            level: InstructionSet::chosen()
+                .level()
+                .unwrap_or(Level::baseline()),
             #[cfg(target_arch = "x86_64")]
             features,
             #[cfg(target_arch = "x86_64")]
@@ -56,30 +62,43 @@ impl<'a> Single<'a> {
         }
     }
 
-    /// Finds what each ray hits: the nearest, or with `ANY` the first that is found. `put` receives
-    /// each ray's index and hit, in any order.
-    pub fn trace<const ANY: bool, S: Resting + ?Sized>(
+    /// Finds what each ray hits: the nearest, or with `ANY` the first that is found. `lefts` has
+    /// the index of the sphere over which each ray passes; beyond its end there is none. `put`
+    /// receives each ray's index and hit, in any order.
+    pub fn trace<const ANY: bool>(
         &self,
         rays: &[Ray],
-        spheres: &S,
+        lefts: &[u32],
+        spheres: &[Sphere],
         mut put: impl FnMut(usize, Hit),
     ) {
+        if few::has_lanes(self.query.rung) && spheres.len() <= few::FEW {
+            few::trace::<ANY>(self.level, self.query.rung, rays, lefts, spheres, put);
+            return;
+        }
         #[cfg(target_arch = "x86_64")]
-        if let (Some((wide, levels)), Some(spheres)) = (self.levels, spheres.at_rest())
-            && (self.query.rung == Rung::Robust || levels.groups.len() <= 2)
+        if let Some((wide, levels)) = self.levels
+            && (few::has_lanes(self.query.rung) || levels.groups.len() <= 2)
             && levels.sphere_count <= spheres.len()
         {
             // SAFETY: the machine has AVX-512, as the proof says.
-            unsafe { stream::trace::<ANY>(wide, levels, &self.query, rays, spheres, put) };
+            unsafe { stream::trace::<ANY>(wide, levels, &self.query, rays, lefts, spheres, put) };
             return;
         }
         #[cfg(target_arch = "x86_64")]
         if let (Some(features), true) = (self.features, self.has_tree()) {
-            walk::trace::<ANY, S>(features, &self.query, rays, spheres, put);
+            walk::trace::<ANY, _>(features, &self.query, rays, lefts, spheres, put);
             return;
         }
         for (index, ray) in rays.iter().enumerate() {
-            put(index, self.trace_one::<ANY, S>(ray, spheres));
+            let resting = MovingSpheres {
+                spheres,
+                velocities: &[],
+                time: 0.0,
+                effects: Effects::NONE,
+                left: left(lefts, index),
+            };
+            put(index, self.trace_one::<ANY, _>(ray, &resting));
         }
     }
 

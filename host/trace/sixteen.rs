@@ -9,12 +9,13 @@ use spherule_kernel::accel::slabs::Slabs;
 use spherule_kernel::cull::bounds::Line;
 use spherule_kernel::lane::{Lane as _, Lane3};
 use spherule_kernel::precision::OnRung;
-use spherule_kernel::precision::robust::Quadratic;
 use spherule_kernel::precision::root::root_within;
+use spherule_kernel::precision::{double, robust};
 use spherule_kernel::{Hit, Ray, Rung, Sphere};
 
 use super::avx512::{self, Avx512};
-use crate::lanes::{LANES, Single16};
+use super::search::left;
+use crate::lanes::{Double16, LANES, Single16};
 
 /// One value of each ray.
 #[derive(Clone, Copy, Debug)]
@@ -45,6 +46,8 @@ impl Lanes<f32> {
 /// Up to sixteen rays. Lanes beyond the last ray are unused.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Sixteen {
+    /// The index of the sphere over which the ray passes.
+    left: Lanes<u32>,
     /// As in the rays.
     origin: [Lanes<f32>; 3],
     direction: [Lanes<f32>; 3],
@@ -112,12 +115,13 @@ pub(super) fn is_plain(ray: &Ray, start: f32) -> bool {
 }
 
 impl Sixteen {
-    /// Takes the rays of a slice, sixteen at most. Returns whether all are plain; if not, they must
-    /// not be traced here.
+    /// Takes the rays of a slice, sixteen at most, with the spheres that they leave. Returns
+    /// whether all are plain; if not, they must not be traced here.
     #[must_use]
     #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
-    pub(super) fn take(&mut self, rung: Rung, rays: &[Ray], world: &Extent) -> bool {
+    pub(super) fn take(&mut self, rung: Rung, rays: &[Ray], lefts: &[u32], world: &Extent) -> bool {
         for (i, ray) in rays.iter().take(LANES).enumerate() {
+            self.left.0[i] = left(lefts, i);
             for axis in 0..3 {
                 self.origin[axis].0[i] = ray.origin[axis];
                 self.direction[axis].0[i] = ray.direction[axis];
@@ -206,6 +210,15 @@ impl Sixteen {
         avx512::cull(of(&self.origin), of(&self.scaled), a, None, spheres)
     }
 
+    /// Of which of sixteen pairs, given by index, the ray passes over the sphere.
+    #[inline]
+    #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
+    pub(super) fn have_left(&self, rays: __m512i, spheres: __m512i) -> __mmask16 {
+        // SAFETY: sixteen numbers on a boundary of 64 bytes.
+        let left = unsafe { _mm512_load_epi32(self.left.0.as_ptr().cast()) };
+        _mm512_cmpeq_epi32_mask(_mm512_permutexvar_epi32(rays, left), spheres)
+    }
+
     /// Where the ray and the sphere of each of sixteen pairs meet on [`Rung::Robust`];
     /// [`Hit::NONE_T`] where they do not. Both are given by index.
     #[inline]
@@ -223,12 +236,7 @@ impl Sixteen {
     ) -> __m512 {
         let number = |lanes| Single16(f32x16::simd_from(simd, lanes));
         let of = |lanes: &Lanes<f32>| number(_mm512_permutexvar_ps(rays, lanes.load()));
-        let at = _mm512_slli_epi32::<2>(indices);
-        let [cx, cy, cz, radius] = [0, 1, 2, 3].map(|row| {
-            let at = _mm512_add_epi32(at, _mm512_set1_epi32(row));
-            // SAFETY: four floats a sphere, and the spheres exist.
-            number(unsafe { _mm512_i32gather_ps::<4>(at, spheres.as_ptr().cast()) })
-        });
+        let [cx, cy, cz, radius] = gather(spheres, indices).map(number);
         let [x, y, z] = self.direction.each_ref().map(of);
         let [ox, oy, oz] = self.origin.each_ref().map(of);
         let o = Lane3 {
@@ -238,11 +246,62 @@ impl Sixteen {
         };
         let d = Lane3 { x, y, z };
         let (a, inverse) = (of(&self.squared), of(&self.inverse_squared));
-        let quadratic = Quadratic::of(o, radius, d, a, inverse);
+        let quadratic = robust::Quadratic::of(o, radius, d, a, inverse);
         let (near, far) = quadratic.roots();
         let (t, is_within) = root_within(near, far, of(&self.t_min), of(&self.end));
         let hits = is_within & quadratic.meets();
         let none = Single16::splat(simd, Hit::NONE_T);
         Single16::select(hits, t, none).0.into()
     }
+
+    /// The same on [`Rung::Double`].
+    #[inline]
+    // As for `robust`.
+    #[target_feature(
+        enable = "adx,aes,avx512bitalg,avx512bw,avx512cd,avx512dq,avx512f,avx512ifma,avx512vbmi,avx512vbmi2,avx512vl,avx512vnni,avx512vpopcntdq,bmi1,bmi2,cmpxchg16b,fma,fxsr,gfni,lzcnt,movbe,pclmulqdq,popcnt,rdrand,rdseed,sha,vaes,vpclmulqdq,xsave,xsavec,xsaveopt,xsaves"
+    )]
+    pub(super) fn double(
+        &self,
+        Avx512(simd): Avx512,
+        rays: __m512i,
+        spheres: &[Sphere],
+        indices: __m512i,
+    ) -> __m512 {
+        let number = |lanes| Single16(f32x16::simd_from(simd, lanes));
+        let of = |lanes: &Lanes<f32>| number(_mm512_permutexvar_ps(rays, lanes.load()));
+        let [cx, cy, cz, radius] =
+            gather(spheres, indices).map(|lanes| Double16::widened(number(lanes)));
+        let [x, y, z] = self
+            .direction
+            .each_ref()
+            .map(|lanes| Double16::widened(of(lanes)));
+        let [ox, oy, oz] = self
+            .origin
+            .each_ref()
+            .map(|lanes| Double16::widened(of(lanes)));
+        let o = Lane3 {
+            x: ox - cx,
+            y: oy - cy,
+            z: oz - cz,
+        };
+        let quadratic = double::Quadratic::of(o, radius, Lane3 { x, y, z });
+        let (near, far) = quadratic.roots();
+        let (near, far) = (near.rounded(), far.rounded());
+        let (t, is_within) = root_within(near, far, of(&self.t_min), of(&self.end));
+        let hits = is_within & quadratic.meets().narrowed(simd);
+        let none = Single16::splat(simd, Hit::NONE_T);
+        Single16::select(hits, t, none).0.into()
+    }
+}
+
+/// Centres and radii of sixteen spheres, which must exist.
+#[inline]
+#[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
+fn gather(spheres: &[Sphere], indices: __m512i) -> [__m512; 4] {
+    let at = _mm512_slli_epi32::<2>(indices);
+    [0, 1, 2, 3].map(|row| {
+        let at = _mm512_add_epi32(at, _mm512_set1_epi32(row));
+        // SAFETY: four floats a sphere, and the spheres exist.
+        unsafe { _mm512_i32gather_ps::<4>(at, spheres.as_ptr().cast()) }
+    })
 }

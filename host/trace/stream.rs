@@ -18,8 +18,9 @@ use spherule_kernel::{Hit, Ray, Rung, Sphere};
 
 use super::avx512::{Avx512, LANES};
 use super::boxes::near_and_far;
+use super::few::has_lanes;
 use super::levels::{Group, Levels};
-use super::search::{Query, Resting};
+use super::search::{Query, Resting, left};
 use super::sixteen::{RayPlanes, Sixteen, end_of, is_plain};
 use super::walk::{self, Features};
 use crate::lanes::Single16;
@@ -58,8 +59,8 @@ const fn of_pair(pair: u32) -> (usize, usize) {
     ((pair >> Levels::INDEX_BITS) as usize, index as usize)
 }
 
-/// Finds what each ray hits; `put` receives the ray's index. There must be at least as many spheres
-/// as the levels name.
+/// Finds what each ray hits; `lefts` and `put` are as for [`Single::trace`](super::single::Single).
+/// There must be at least as many spheres as the levels name.
 #[target_feature(
     enable = "adx,aes,avx512bitalg,avx512bw,avx512cd,avx512dq,avx512f,avx512ifma,avx512vbmi,avx512vbmi2,avx512vl,avx512vnni,avx512vpopcntdq,bmi1,bmi2,cmpxchg16b,fma,fxsr,gfni,lzcnt,movbe,pclmulqdq,popcnt,rdrand,rdseed,sha,vaes,vpclmulqdq,xsave,xsavec,xsaveopt,xsaves"
 )]
@@ -68,6 +69,7 @@ pub(super) fn trace<const ANY: bool>(
     levels: &Levels,
     query: &Query<'_>,
     rays: &[Ray],
+    lefts: &[u32],
     spheres: &[Sphere],
     mut put: impl FnMut(usize, Hit),
 ) {
@@ -77,9 +79,10 @@ pub(super) fn trace<const ANY: bool>(
     };
     for (some, rays) in rays.chunks(LANES).enumerate() {
         let mut put = |index: usize, hit: Hit| put(LANES * some + index, hit);
-        let are_plain = scratch.sixteen.take(query.rung, rays, &query.extent);
+        let lefts = lefts.get(LANES * some..).unwrap_or_default();
+        let are_plain = scratch.sixteen.take(query.rung, rays, lefts, &query.extent);
         if !are_plain {
-            walk::trace::<ANY, _>(Features::Avx512(wide), query, rays, spheres, put);
+            walk::trace::<ANY, _>(Features::Avx512(wide), query, rays, lefts, spheres, put);
             continue;
         }
         scratch.begin(wide, top, rays.len());
@@ -87,16 +90,16 @@ pub(super) fn trace<const ANY: bool>(
             scratch.descend(wide, level);
         }
         if scratch.pairs.len() > MOST {
-            walk::trace::<ANY, _>(Features::Avx512(wide), query, rays, spheres, put);
-        } else if query.rung == Rung::Robust {
-            let nearest = scratch.evaluate(wide, levels, spheres);
+            walk::trace::<ANY, _>(Features::Avx512(wide), query, rays, lefts, spheres, put);
+        } else if has_lanes(query.rung) {
+            let nearest = scratch.evaluate(wide, query.rung, levels, spheres);
             for index in 0..rays.len() {
                 put(index, nearest.hit(index));
             }
         } else {
             let mut pairs = scratch.pairs.iter().peekable();
             for (index, ray) in rays.iter().enumerate() {
-                let mut search = query.search(ray, spheres.left());
+                let mut search = query.search(ray, left(lefts, index));
                 while let Some(pair) = pairs.next_if(|pair| of_pair(**pair).0 == index) {
                     let (first, count) = levels.spheres[of_pair(*pair).1];
                     search.test_wide::<ANY>(wide, spheres, first, count);
@@ -232,7 +235,13 @@ impl Scratch {
     /// Finds what rays hit among the spheres in the boxes that they are paired with.
     #[inline]
     #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
-    fn evaluate(&mut self, wide: Avx512, levels: &Levels, spheres: &[Sphere]) -> Nearest {
+    fn evaluate(
+        &mut self,
+        wide: Avx512,
+        rung: Rung,
+        levels: &Levels,
+        spheres: &[Sphere],
+    ) -> Nearest {
         let mut nearest = Nearest([i64::MAX; LANES]);
         let pairs = &self.pairs[..];
         // As many boxes as there is certainly room for.
@@ -258,7 +267,10 @@ impl Scratch {
             rays.finish();
             indices.finish();
             // SAFETY: the machine has every feature of AVX-512 that this needs, as the proof says.
-            unsafe { nearest.evaluate(wide, &self.sixteen, &self.rays, &self.spheres, spheres) };
+            unsafe {
+                let (rays, found) = (&self.rays, &self.spheres);
+                nearest.evaluate(wide, rung, &self.sixteen, rays, found, spheres);
+            };
         }
         nearest
     }
@@ -368,6 +380,7 @@ impl Nearest {
     fn evaluate(
         &mut self,
         wide: Avx512,
+        rung: Rung,
         sixteen: &Sixteen,
         rays: &[u32],
         indices: &[u32],
@@ -382,10 +395,15 @@ impl Nearest {
                     _mm512_maskz_loadu_epi32(there, indices.as_ptr().cast()),
                 )
             };
-            let t = sixteen.robust(wide, some_rays, spheres, some_indices);
+            let t = if rung == Rung::Robust {
+                sixteen.robust(wide, some_rays, spheres, some_indices)
+            } else {
+                sixteen.double(wide, some_rays, spheres, some_indices)
+            };
             // Makes −0 into +0.
             let t = _mm512_add_ps(t, _mm512_setzero_ps());
             let hits = _mm512_mask_cmp_ps_mask::<_CMP_LT_OQ>(there, t, _mm512_set1_ps(Hit::NONE_T));
+            let hits = hits & !sixteen.have_left(some_rays, some_indices);
             let bits = _mm512_castps_si512(t);
             let sign = _mm512_srli_epi32::<1>(_mm512_srai_epi32::<31>(bits));
             let (first, second) = joined(_mm512_xor_epi32(bits, sign), some_indices);
@@ -429,8 +447,8 @@ mod tests {
     use spherule_kernel::accel::brute::{MovingSpheres, nearest_hit_in};
     use spherule_kernel::accel::traversal::Traversal;
 
+    use super::super::sample_rays::{rays, world};
     use super::super::single::Single;
-    use super::super::walk::tests::{rays, world};
     use super::*;
     use crate::accel::build_still;
     use crate::cpu::InstructionSet;
@@ -459,6 +477,14 @@ mod tests {
             let levels = Levels::of(tree.nodes.tree()).expect("levels");
             assert!(!is_heap || levels.spheres.len() * LANES > MOST);
             let rays = rays(&mut random);
+            // The one that most rays hit, because it is around all.
+            let around = (0..spheres.len()).find(|index| spheres[*index].radius() == 5.0);
+            let lefts: Vec<u32> = (0..rays.len())
+                .map(|ray| match around {
+                    Some(index) if ray % 2 == 0 => index as u32,
+                    _ => Hit::NONE_SPHERE,
+                })
+                .collect();
             let moving = MovingSpheres {
                 spheres: &spheres,
                 velocities: &[],
@@ -471,10 +497,15 @@ mod tests {
                 let single = Single::new(rung, tree.nodes.tree(), Some(&levels));
                 let code = rung.to_u32();
                 let mut found = vec![(Hit::NONE, Hit::NONE); rays.len()];
-                single.trace::<false, _>(&rays, &spheres[..], |index, hit| found[index].0 = hit);
-                single.trace::<true, _>(&rays, &spheres[..], |index, hit| found[index].1 = hit);
-                for (ray, (nearest, any)) in rays.iter().zip(&found) {
-                    let expected = nearest_hit_in(code, ray, &spheres[..], 0, u32::MAX);
+                let all = &spheres[..];
+                single.trace::<false>(&rays, &lefts, all, |index, hit| found[index].0 = hit);
+                single.trace::<true>(&rays, &lefts, all, |index, hit| found[index].1 = hit);
+                for ((ray, left), (nearest, any)) in rays.iter().zip(&lefts).zip(&found) {
+                    let moving = MovingSpheres {
+                        left: *left,
+                        ..moving
+                    };
+                    let expected = nearest_hit_in(code, ray, &moving, 0, u32::MAX);
                     assert_eq!(*nearest, expected, "{name}, {rung:?}, {ray:?}");
                     let alone = single.nearest_hit(ray, &moving);
                     assert_eq!(alone, expected, "{name}, {rung:?}, alone {ray:?}");

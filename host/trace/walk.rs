@@ -16,7 +16,7 @@ use spherule_kernel::{Hit, Ray};
 use super::avx2::Avx2;
 use super::avx512::Avx512;
 use super::boxes::Planes;
-use super::search::{Query, Resting, Search};
+use super::search::{Query, Resting, Search, left};
 use super::wide::Wide;
 use crate::cpu::InstructionSet;
 
@@ -59,22 +59,23 @@ pub(super) fn trace_one<const ANY: bool, S: Resting + ?Sized>(
     }
 }
 
-/// Finds what each ray hits; `put` receives the ray's index.
+/// Finds what each ray hits; `lefts` and `put` are as for [`Single::trace`](super::single::Single).
 pub(super) fn trace<const ANY: bool, S: Resting + ?Sized>(
     features: Features,
     query: &Query<'_>,
     rays: &[Ray],
+    lefts: &[u32],
     spheres: &S,
     put: impl FnMut(usize, Hit),
 ) {
     match features {
         // SAFETY: the machine has the features.
         Features::Avx2(wide) => unsafe {
-            all_with_avx2::<ANY, _, S>(wide, query, rays, spheres, put);
+            all_with_avx2::<ANY, _, S>(wide, query, rays, lefts, spheres, put);
         },
         // SAFETY: as above.
         Features::Avx512(wide) => unsafe {
-            all_with_avx512::<ANY, _, S>(wide, query, rays, spheres, put);
+            all_with_avx512::<ANY, _, S>(wide, query, rays, lefts, spheres, put);
         },
     }
 }
@@ -101,10 +102,11 @@ macro_rules! with_features {
             wide: W,
             query: &Query<'_>,
             rays: &[Ray],
+            lefts: &[u32],
             spheres: &S,
             put: impl FnMut(usize, Hit),
         ) {
-            in_turns::<ANY, W, S>(wide, query, rays, spheres, put);
+            in_turns::<ANY, W, S>(wide, query, rays, lefts, spheres, put);
         }
     };
 }
@@ -125,6 +127,7 @@ fn in_turns<const ANY: bool, W: Wide, S: Resting + ?Sized>(
     wide: W,
     query: &Query<'_>,
     rays: &[Ray],
+    lefts: &[u32],
     spheres: &S,
     mut put: impl FnMut(usize, Hit),
 ) {
@@ -137,7 +140,7 @@ fn in_turns<const ANY: bool, W: Wide, S: Resting + ?Sized>(
     let mut count = 0;
     for (walk, index) in walks.iter_mut().zip(&mut indices) {
         let Some((of, ray)) = rest.next() else { break };
-        walk.write(Walk::of(wide, query, ray, spheres.left()));
+        walk.write(Walk::of(wide, query, ray, left(lefts, of)));
         *index = of;
         count += 1;
     }
@@ -152,7 +155,7 @@ fn in_turns<const ANY: bool, W: Wide, S: Resting + ?Sized>(
             }
             put(indices[place], walk.search.finish::<ANY>());
             if let Some((of, ray)) = rest.next() {
-                *walk = Walk::of(wide, query, ray, spheres.left());
+                *walk = Walk::of(wide, query, ray, left(lefts, of));
                 indices[place] = of;
                 place += 1;
             } else {
@@ -322,40 +325,16 @@ impl<W: Wide> Walk<W> {
 }
 
 #[cfg(test)]
-pub(super) mod tests {
+mod tests {
     use glam::Vec3;
     use spherule_kernel::accel::brute::{MovingSpheres, Spheres, is_occluded, nearest_hit_in};
     use spherule_kernel::accel::node::Tree;
     use spherule_kernel::{Effects, Rung, Sphere};
 
+    use super::super::sample_rays::{rays, world};
     use super::*;
     use crate::accel::build_still;
     use crate::random::Random;
-
-    /// Spheres of many sizes, and one around all.
-    pub fn world(random: &mut Random, count: usize) -> Vec<Sphere> {
-        let mut spheres: Vec<Sphere> = (0..count)
-            .map(|_| Sphere::new(random.vec3(-1.0, 1.0), random.log_within(0.001, 0.1)))
-            .collect();
-        spheres.push(Sphere::new(Vec3::ZERO, 5.0));
-        spheres
-    }
-
-    /// From anywhere to anywhere; some rays are short, and some start behind their origin.
-    pub fn rays(random: &mut Random) -> Vec<Ray> {
-        (0..1600)
-            .map(|index| {
-                let (origin, direction) = (random.vec3(-1.5, 1.5), random.vec3(-1.0, 1.0));
-                let (t_min, t_max) = match index % 4 {
-                    0 => (0.0, f32::MAX),
-                    1 => (1e-3, random.within(0.0, 2.0)),
-                    2 => (-3.0, 3.0),
-                    _ => (0.5, f32::MAX),
-                };
-                Ray::within(origin, direction, t_min, t_max)
-            })
-            .collect()
-    }
 
     fn compare<S: Resting + ?Sized>(tree: Tree<'_>, spheres: &S, rays: &[Ray]) {
         let all = [
@@ -368,7 +347,7 @@ pub(super) mod tests {
                 let code = rung.to_u32();
                 let expected = |ray: &Ray| nearest_hit_in(code, ray, spheres, 0, u32::MAX);
                 let (mut count, mut hits) = (0, 0);
-                trace::<false, S>(features, &query, rays, spheres, |index, hit| {
+                trace::<false, S>(features, &query, rays, &[], spheres, |index, hit| {
                     let ray = &rays[index];
                     assert_eq!(hit, expected(ray), "{features:?} {rung:?} {ray:?}");
                     count += 1;
@@ -376,7 +355,7 @@ pub(super) mod tests {
                 });
                 assert_eq!(count, rays.len());
                 assert!(hits > rays.len() / 2, "{hits}");
-                trace::<true, S>(features, &query, rays, spheres, |index, hit| {
+                trace::<true, S>(features, &query, rays, &[], spheres, |index, hit| {
                     let ray = &rays[index];
                     let is_occluded = is_occluded(code, ray, spheres);
                     assert_eq!(hit.is_some(), is_occluded, "{features:?} {rung:?} {ray:?}");

@@ -68,6 +68,8 @@ effects! {
     LARGE_SPHERES = 18, "large-spheres";
     /// Glass in other glass, or that overlaps it, and cameras in glass.
     NESTED_GLASS = 19, "nested-glass";
+    /// So many lights that they are chosen by what they may give to a place.
+    MANY_LIGHTS = 20, "many-lights";
 }
 
 impl Effects {

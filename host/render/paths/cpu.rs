@@ -1,17 +1,16 @@
-//! The CPU path: the function that the GPU's entry point calls, over bands of rows.
+//! Light paths on the CPU: bands of rows on every thread.
 
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
-use glam::UVec2;
 use rayon::prelude::*;
-use spherule_kernel::path::{Scenery, trace_pixel};
+use spherule_kernel::path::Scenery;
 use spherule_kernel::precision::OnRung;
 use spherule_kernel::{Accumulator, Effects, PathLaunch, Rung};
 
 use super::budget::{Budget, Reached, StoppedBy, noise};
 use super::preview::Preview;
-use super::{Prepared, Progress, Sampled, Settings};
+use super::{Prepared, Progress, Sampled, Settings, together};
 use crate::error::{Error, Result};
 use crate::film;
 use crate::render::Timings;
@@ -23,7 +22,7 @@ use crate::trace::single::Single;
 const BAND_ROWS: usize = 2;
 /// After so many pixels at most it is asked whether the render goes on; after fewer where they take
 /// longer than this.
-const RUN: usize = 16;
+const RUN: usize = 64;
 const PATIENCE: Duration = Duration::from_millis(5);
 
 /// Effects of scenes whose light does not bounce.
@@ -249,9 +248,5 @@ fn trace_run<const EFFECTS: u32, const RUNG: u32>(
         rung: RUNG,
         ..*scenery
     };
-    for (index, accumulator) in accumulators.iter_mut().enumerate() {
-        let index = first + index;
-        let at = UVec2::new((index % width) as u32, (index / width) as u32);
-        *accumulator = trace_pixel(&scenery, at, *accumulator);
-    }
+    together::trace_pixels(&scenery, width, first, accumulators);
 }

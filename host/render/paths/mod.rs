@@ -2,8 +2,9 @@
 //!
 //! | module | holds |
 //! | --- | --- |
-//! | [`prepare`] | what the kernel is told of a scene: the launch, the lights, the tables |
-//! | [`cpu`] | the kernel's function over bands of rows, on every thread |
+//! | [`prepare`] | what the kernel is told of a scene: the launch, the tables |
+//! | `lights` | the lights, in a list or a tree |
+//! | [`cpu`], `together` | the kernel's functions over bands of rows, on every thread; paths in step |
 //! | [`gpu`] | the kernel's entry point over tiles and runs of samples |
 //! | [`budget`] | when enough samples are enough |
 //! | `rebase` | moves scenes that are far from the origin to it |
@@ -13,9 +14,11 @@ pub mod budget;
 pub mod cpu;
 #[cfg(feature = "gpu")]
 pub mod gpu;
+mod lights;
 pub mod prepare;
 mod preview;
 mod rebase;
+mod together;
 
 use std::time::Instant;
 

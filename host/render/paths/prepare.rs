@@ -4,13 +4,13 @@ use std::borrow::Cow;
 use std::f32::consts::PI;
 use std::sync::LazyLock;
 
-use glam::{DVec3, UVec2, UVec4, Vec3, Vec4};
+use glam::{DVec3, UVec4, Vec3, Vec4};
 use spherule_kernel::color::luminance;
 use spherule_kernel::fog::Fog;
-use spherule_kernel::light::sky::Sky;
 use spherule_kernel::material::microfacet::{ALBEDO_LEN, Albedo};
-use spherule_kernel::{Effects, Hit, Light, Material, PathLaunch};
+use spherule_kernel::{Effects, Hit, Light, PathLaunch};
 
+use super::lights::lights;
 use super::rebase::rebased;
 use crate::accel::{self, Acceleration, Nodes};
 use crate::error::Result;
@@ -79,7 +79,7 @@ impl Prepared {
             Some(tree) => (tree.sort_world(&world), tree.nodes),
             None => (world.into_owned(), Nodes::default()),
         };
-        let (lights, sky, sphere_light_probability) = lights(scene, &world);
+        let (lights, sky, sphere_light_probability) = lights(scene, &world, shutter, shown);
         let launch = PathLaunch {
             camera: whole.camera,
             image_size: whole.image_size,
@@ -129,82 +129,6 @@ impl Prepared {
             },
         })
     }
-}
-
-/// The lights with their probabilities, the sky with those of its own, and the factor that makes a
-/// sphere's probability out of its radiance and radius.
-///
-/// The sun, the environment, and all lights in the scene together share the choice evenly; among
-/// the last, power decides.
-fn lights(scene: &Scene, world: &World) -> (Vec<Light>, Sky, f32) {
-    let mut local: Vec<(Light, f64)> = Vec::new();
-    for light in &scene.lights {
-        let power = 4.0 * PI * luminance(light.intensity);
-        local.push((Light::point(light.position, light.intensity), power.into()));
-    }
-    if world.materials.iter().any(|m| m.kind == Material::EMISSIVE) {
-        for (index, (sphere, id)) in world.spheres.iter().zip(&world.material_ids).enumerate() {
-            let material = world.materials[*id as usize];
-            if material.kind == Material::EMISSIVE {
-                let r = f64::from(sphere.radius());
-                let power =
-                    4.0 * f64::from(PI * PI) * f64::from(luminance(material.volume)) * r * r;
-                local.push((Light::sphere(index as u32, material.volume), power));
-            }
-        }
-    }
-    local.retain(|(_, power)| *power > 0.0);
-    let total: f64 = local.iter().map(|(_, power)| power).sum();
-
-    let mut sky = Sky {
-        horizon: scene.background,
-        zenith: scene.background,
-        ..Sky::default()
-    };
-    let mut far = Vec::new();
-    if let Some(surroundings) = &scene.sky {
-        (sky.horizon, sky.zenith) = (surroundings.horizon, surroundings.zenith);
-        if let Some(sun) = surroundings.sun {
-            let (height, radiance) = (sun.height(), sun.radiance());
-            let color = radiance.unwrap_or(sun.irradiance);
-            sky.sun_radiance = radiance.unwrap_or_default();
-            (sky.sun_direction, sky.sun_height) = (sun.direction, height);
-            if luminance(color) > 0.0 {
-                far.push(Light::sun(sun.direction, height, color));
-            }
-        }
-        if let Some(image) = &surroundings.image {
-            sky.environment_size = UVec2::new(image.width, image.height);
-            sky.environment_turn = (surroundings.rotation / 360.0).rem_euclid(1.0);
-            far.push(Light::environment());
-        }
-    }
-
-    let groups = far.len() + usize::from(!local.is_empty());
-    let share = 1.0 / groups.max(1) as f64;
-    let mut lights = Vec::new();
-    let mut cumulative = 0.0;
-    let mut add = |light: Light, probability: f64| {
-        cumulative += probability;
-        lights.push(Light {
-            probability: probability as f32,
-            cumulative: cumulative as f32,
-            ..light
-        });
-    };
-    for (light, power) in local {
-        add(light, share * power / total);
-    }
-    for light in far {
-        add(light, share);
-        match light.kind {
-            Light::SUN => sky.sun_probability = share as f32,
-            _ => sky.environment_probability = share as f32,
-        }
-    }
-    let factor = share * 4.0 * f64::from(PI * PI) / total;
-    let factor = if total > 0.0 { factor as f32 } else { 0.0 };
-    (lights, sky, factor)
 }
 
 /// Whether light comes from a sky that is not an image.
@@ -290,32 +214,4 @@ fn environment(image: &EnvironmentImage, tables: &mut Vec<f32>) {
     tables.extend(rows.iter().map(|sum| (sum / total) as f32));
     tables.extend(columns);
     tables.extend(image.texels.iter().flat_map(|texel| texel.to_array()));
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use spherule_kernel::Sphere;
-
-    /// One of them is seen; if each were a light, what they shine on would be twice as bright.
-    #[test]
-    fn of_equal_spheres_that_glow_one_shines() {
-        let mut world = World::default();
-        let glow = world.add_material(Material::emissive(Vec3::ONE));
-        let grey = world.add_material(Material::diffuse(Vec3::ONE));
-        let above = Vec3::new(0.0, 3.0, 0.0);
-        world.add(Sphere::new(above, 0.5), glow);
-        world.add(Sphere::new(Vec3::ZERO, 1.0), grey);
-        world.add(Sphere::new(above, 0.5), glow);
-        world.add(Sphere::new(above, 0.25), glow);
-        let scene = Scene::new(world);
-        for acceleration in [Acceleration::Tree, Acceleration::BruteForce] {
-            let prepared = Prepared::new(&scene, EffectChoice::Auto, acceleration);
-            assert_eq!(
-                prepared.expect("a scene").lights.len(),
-                2,
-                "{acceleration:?}"
-            );
-        }
-    }
 }

@@ -4,6 +4,7 @@
 //! Zimmerman, Monte Carlo techniques for direct lighting calculations, ACM Trans. Graph. 15 (1996).
 
 pub mod sky;
+pub mod tree;
 
 use core::f32::consts::{FRAC_1_PI, TAU};
 
@@ -17,7 +18,8 @@ use crate::arithmetic::elements::read;
 use crate::path::sampling::{cone, cone_density, uniform_sphere};
 use crate::sphere::Sphere;
 
-/// A light that is sampled. One is chosen at a time, by its probability.
+/// A light that is sampled. One is chosen at a time, by its probability. In a [tree](tree) of
+/// lights some fields mean something else.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Light {
@@ -37,8 +39,8 @@ pub struct Light {
     /// One minus the cosine of the angle between the sun's middle and its edge; zero for a sun
     /// without extent.
     pub height: f32,
-    /// Padding for the layout on a GPU.
-    pub padding: u32,
+    /// In a [tree](tree) of lights, the entry of another light.
+    pub leaf: u32,
 }
 
 impl Light {
@@ -50,6 +52,8 @@ impl Light {
     pub const SUN: u32 = 2;
     /// The image of the surroundings.
     pub const ENVIRONMENT: u32 = 3;
+    /// Several lights of a [tree](tree).
+    pub const NODE: u32 = 4;
 
     /// A point of light of this radiant intensity, per steradian.
     #[must_use]

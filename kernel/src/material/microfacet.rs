@@ -120,6 +120,15 @@ pub struct RoughMetal {
 }
 
 impl RoughMetal {
+    /// Where there is no metal.
+    pub(crate) const NONE: Self = Self {
+        color: Vec3::ZERO,
+        alpha: 1.0,
+        from: Vec3::Z,
+        albedo: 0.0,
+        mean: 0.0,
+    };
+
     /// The metal of this colour and this α seen along `from`; `table` is what
     /// [`Albedo::table`] makes.
     #[inline]

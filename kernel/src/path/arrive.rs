@@ -3,13 +3,13 @@
 use glam::Vec3;
 
 use super::light_path::Path;
+use super::place::Place;
 use super::sampling::power_heuristic;
 use super::scenery::Scenery;
 use crate::accel::traversal::Traversal;
 use crate::color::luminance;
 use crate::effects::Effects;
-use crate::light;
-use crate::sphere::Sphere;
+use crate::light::{self, tree};
 
 /// Adds the light of the sky, for a path that meets nothing.
 #[inline]
@@ -37,18 +37,25 @@ pub(super) fn arrive_at_sky<T: Traversal>(scenery: &Scenery<'_, T>, path: &mut P
     path.radiance += path.throughput * light * path.outside_of_glass(scenery);
 }
 
-/// Adds the light of an emissive sphere, for a path that meets one.
+/// Adds the light of the emissive sphere that a path meets at `place`.
 #[inline]
 pub(super) fn arrive_at_lamp<T: Traversal>(
     scenery: &Scenery<'_, T>,
     path: &mut Path,
-    sphere: Sphere,
+    place: &Place,
     radiance: Vec3,
 ) {
+    let effects = scenery.effects;
     let mut weight = 1.0;
-    if scenery.effects.any(Effects::SOFT_SHADOWS) && path.density > 0.0 {
-        let power = luminance(radiance) * sphere.radius() * sphere.radius();
-        let chosen = power * scenery.launch.sphere_light_probability;
+    if effects.any(Effects::SOFT_SHADOWS) && path.density > 0.0 {
+        let sphere = scenery.sphere(place.sphere as usize, path.time);
+        let chosen = if effects.any(Effects::MANY_LIGHTS) {
+            let (point, facing) = (path.origin, path.facing);
+            tree::probability_of(scenery.lights, place.sphere, point, facing)
+        } else {
+            let power = luminance(radiance) * sphere.radius() * sphere.radius();
+            power * scenery.launch.sphere_light_probability
+        };
         let other = chosen * light::sphere_density(sphere, path.origin);
         weight = power_heuristic(path.density, other);
     }

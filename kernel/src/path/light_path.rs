@@ -7,12 +7,13 @@ use super::place::Place;
 use super::scenery::Scenery;
 use crate::accel::traversal::Traversal;
 use crate::effects::Effects;
+use crate::film::Accumulator;
 use crate::hit::Hit;
 use crate::ray::Ray;
 
 /// The state of a light path.
-#[derive(Clone, Copy)]
-pub(super) struct Path {
+#[derive(Clone, Copy, Debug)]
+pub struct Path {
     pub(super) origin: Vec3,
     /// The index of the sphere that the path leaves, [`Hit::NONE_SPHERE`](crate::Hit::NONE_SPHERE)
     /// if it leaves none.
@@ -32,6 +33,8 @@ pub(super) struct Path {
     pub(super) is_in_glass: u32,
     /// The density with which the direction was sampled, or zero if no light was sampled.
     pub(super) density: f32,
+    /// If there are many lights, the normal where one was sampled last, on the side of the path.
+    pub(super) facing: Vec3,
     pub(super) time: f32,
     /// The number of bounces, and 2¹⁶ times that of surfaces of glass that the path has passed
     /// because smaller spheres cover them.
@@ -89,8 +92,41 @@ impl Path {
 
     /// The ray along which the path goes on.
     #[inline]
-    pub(super) fn ray(&self) -> Ray {
+    #[must_use]
+    pub fn ray(&self) -> Ray {
         Ray::within(self.origin, self.direction, f32::MIN_POSITIVE, Hit::NONE_T)
+    }
+
+    /// The index of the sphere over which that ray passes, because it leaves it; otherwise
+    /// [`Hit::NONE_SPHERE`](crate::Hit::NONE_SPHERE).
+    #[inline]
+    #[must_use]
+    pub fn left(&self) -> u32 {
+        self.left
+    }
+
+    /// The time at which spheres are met.
+    #[inline]
+    #[must_use]
+    pub fn time(&self) -> f32 {
+        self.time
+    }
+
+    /// The hit, or the one where the path meets again the sphere that it leaves, if that is nearer:
+    /// see [`Place::exit`].
+    #[inline]
+    #[must_use]
+    pub fn or_exit(&self, hit: Hit) -> Hit {
+        let (exit, left) = (self.exit, self.left);
+        let is_nearer = (exit < hit.t) | ((exit == hit.t) & (left < hit.sphere));
+        if is_nearer & (exit < Hit::NONE_T) {
+            Hit {
+                t: exit,
+                sphere: left,
+            }
+        } else {
+            hit
+        }
     }
 
     /// The glass on the other side of the surface that the path has met.
@@ -116,6 +152,18 @@ impl Path {
             effects.any(Effects::GLASS) && self.is_in_glass == 1
         };
         effects.any(Effects::FOG) && !is_in_glass
+    }
+
+    /// Adds light that arrives at the path's vertex from a lamp.
+    #[inline]
+    pub fn receive(&mut self, light: Vec3) {
+        self.radiance += light;
+    }
+
+    /// Counts the path as a sample of its pixel.
+    #[inline]
+    pub fn end(&self, pixel: &mut Accumulator) {
+        pixel.add(self.radiance, self.alpha, self.depth);
     }
 
     /// Sends the path off in `direction`, a unit vector that was sampled with this density.

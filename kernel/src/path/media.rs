@@ -16,11 +16,11 @@ use crate::hit::Hit;
 use crate::material::{Material, material_of};
 
 /// The glass spheres that hold a point, the smallest first; [`Hit::NONE_SPHERE`] after the last.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Media(pub(super) UVec4);
 
 /// What light travels through.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Medium {
     /// The refractive index.
     pub(super) index: f32,

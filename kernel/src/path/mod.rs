@@ -12,9 +12,9 @@
 //! | module | holds |
 //! | --- | --- |
 //! | [`Scenery`] | what stays the same for all paths of a launch |
-//! | [`trace_pixel`] | traces the paths of a pixel, vertex after vertex |
+//! | [`trace_pixel`] | traces the paths of a pixel, vertex after vertex: [`start`], then [`shade`] |
 //! | `vertex` | how a vertex scatters |
-//! | `seek`, `arrive` | lights that are sampled, lights that are met by chance |
+//! | `seek`, `shadow`, `arrive` | lights that are sampled, and the rays to them; lights that are met by chance |
 //! | `glass`, `media` | reflection, refraction and absorption; the glass that a path is in |
 //! | `light_path`, `place` | the state of a path, and where it is scattered |
 //! | [`random`], [`sampling`] | random numbers, and random directions made of them |
@@ -28,8 +28,11 @@ pub mod random;
 pub mod sampling;
 mod scenery;
 mod seek;
+mod shadow;
 mod step;
 mod vertex;
 
+pub use light_path::Path;
 pub use scenery::Scenery;
-pub use step::trace_pixel;
+pub use shadow::Shadow;
+pub use step::{shade, start, trace_pixel};

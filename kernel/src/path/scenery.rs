@@ -1,8 +1,7 @@
 //! [`Scenery`]: the constants of a launch of light paths. Runs on the GPU and on the CPU.
 
-use glam::{Vec3, Vec4};
+use glam::Vec4;
 
-use super::place::Place;
 use crate::accel::brute::MovingSpheres;
 use crate::accel::traversal::Traversal;
 use crate::effects::Effects;
@@ -10,7 +9,6 @@ use crate::film::PathLaunch;
 use crate::hit::Hit;
 use crate::light::Light;
 use crate::material::Material;
-use crate::ray::Ray;
 use crate::sphere::Sphere;
 
 /// The constants of a launch of light paths: how the pipeline was compiled, the parameters of the
@@ -43,7 +41,8 @@ pub struct Scenery<'a, T> {
 impl<T: Traversal> Scenery<'_, T> {
     /// The spheres where they are at `time`, for a ray that leaves the one with the index `left`.
     #[inline]
-    fn spheres_at(&self, time: f32, left: u32) -> MovingSpheres<'_> {
+    #[must_use]
+    pub fn spheres_at(&self, time: f32, left: u32) -> MovingSpheres<'_> {
         MovingSpheres {
             spheres: self.spheres,
             velocities: self.velocities,
@@ -64,36 +63,5 @@ impl<T: Traversal> Scenery<'_, T> {
     pub(super) fn most_bounces(&self) -> u32 {
         // As many as a path counts.
         self.launch.max_bounces.min(0xfffe)
-    }
-
-    /// What a ray hits that leaves the sphere with the index `left`, and meets that again at
-    /// `exit`: see [`Place::exit`].
-    #[inline]
-    pub(super) fn nearest_hit(&self, ray: &Ray, left: u32, exit: f32, time: f32) -> Hit {
-        let mut hit = self
-            .traversal
-            .nearest_hit(ray, &self.spheres_at(time, left));
-        let is_nearer = (exit < hit.t) | ((exit == hit.t) & (left < hit.sphere));
-        if is_nearer & (exit < Hit::NONE_T) {
-            hit = Hit {
-                t: exit,
-                sphere: left,
-            };
-        }
-        hit
-    }
-
-    /// Whether anything is in the way from a place along `direction`, up to `t_max`.
-    #[inline]
-    pub(super) fn is_occluded(
-        &self,
-        place: &Place,
-        direction: Vec3,
-        t_max: f32,
-        time: f32,
-    ) -> bool {
-        let ray = Ray::within(place.surface.point, direction, f32::MIN_POSITIVE, t_max);
-        let spheres = self.spheres_at(time, place.sphere);
-        (place.exit(direction) < t_max) || self.traversal.is_occluded(&ray, &spheres)
     }
 }

@@ -12,31 +12,33 @@ use super::place::Place;
 use super::random::VertexNumbers;
 use super::sampling::{cone, cone_density, power_heuristic};
 use super::scenery::Scenery;
+use super::shadow::Shadow;
 use super::vertex::{LAMBERT, Vertex};
 use crate::accel::traversal::Traversal;
 use crate::effects::Effects;
 use crate::hit::Hit;
-use crate::light::{self, Light};
+use crate::light::{self, Light, tree};
 use crate::precision::intersect;
 use crate::ray::Ray;
 use crate::surface::unit;
 
-/// The ambient light that arrives at the place from `direction`.
+/// The ambient light that arrives at the place from `direction`, times `weight`.
 #[inline]
 pub(super) fn ambient_light<T: Traversal>(
     scenery: &Scenery<'_, T>,
-    time: f32,
     place: &Place,
     direction: Vec3,
-) -> Vec3 {
-    let (effects, launch) = (scenery.effects, scenery.launch);
-    if scenery.is_occluded(place, direction, launch.ambient_distance, time) {
-        Vec3::ZERO
-    } else if launch.has_ambient_sky == 1 {
-        launch.sky.radiance(effects, direction, scenery.tables)
+    weight: Vec3,
+) -> Shadow {
+    let launch = scenery.launch;
+    let light = if launch.has_ambient_sky == 1 {
+        launch
+            .sky
+            .radiance(scenery.effects, direction, scenery.tables)
     } else {
         Vec3::ONE
-    }
+    };
+    Shadow::new(place, direction, launch.ambient_distance, weight * light)
 }
 
 /// The light of one lamp, chosen at random, that the vertex scatters into the path.
@@ -48,13 +50,18 @@ pub(super) fn light_from_seeking<T: Traversal>(
     vertex: &Vertex,
     continues: bool,
     numbers: &VertexNumbers,
-) -> Vec3 {
-    let lamp = light::choose(scenery.lights, numbers.which_light());
+) -> Shadow {
+    let lamp = if scenery.effects.any(Effects::MANY_LIGHTS) {
+        let (point, facing) = (place.surface.point, vertex.facing);
+        tree::choose(scenery.lights, point, facing, numbers.which_light())
+    } else {
+        light::choose(scenery.lights, numbers.which_light())
+    };
     if scenery.effects.any(Effects::AMBIENT_OCCLUSION)
         && (vertex.lobe == LAMBERT) & (lamp.kind == Light::ENVIRONMENT)
     {
         // The ambient light already contains it.
-        return Vec3::ZERO;
+        return Shadow::NONE;
     }
     let found = seek(
         scenery,
@@ -66,7 +73,7 @@ pub(super) fn light_from_seeking<T: Traversal>(
     let (value, density) = vertex.evaluate(scenery, found.direction);
     let light = value * found.radiance;
     if !((found.density > 0.0) & (light.max_element() > 0.0)) {
-        return Vec3::ZERO;
+        return Shadow::NONE;
     }
     let direction = found.direction;
     let mut distance = found.distance;
@@ -83,9 +90,6 @@ pub(super) fn light_from_seeking<T: Traversal>(
             distance = towards.length() - lamp.radius().abs();
         }
     }
-    if scenery.is_occluded(place, direction, distance, path.time) {
-        return Vec3::ZERO;
-    }
     let mut weight = 1.0;
     if continues & !found.is_delta {
         weight = power_heuristic(found.density, density);
@@ -99,7 +103,7 @@ pub(super) fn light_from_seeking<T: Traversal>(
     if scenery.effects.any(Effects::GLASS) && distance < Hit::NONE_T {
         light *= absorb(path.medium(scenery).absorption, distance);
     }
-    light
+    Shadow::new(place, direction, distance, path.throughput * light)
 }
 
 /// A sample of a light, seen from a point.

@@ -16,6 +16,7 @@ use super::random::{Sampler, VertexNumbers};
 use super::sampling::{cosine_hemisphere, disc};
 use super::scenery::Scenery;
 use super::seek::{ambient_light, light_from_seeking};
+use super::shadow::Shadow;
 use super::vertex::{LAMBERT, METAL, PHASE, PLASTIC, Vertex};
 use crate::accel::traversal::Traversal;
 use crate::effects::Effects;
@@ -56,8 +57,11 @@ pub fn trace_pixel<T: Traversal>(
     let mut sampler = Sampler::new(launch.seed, pixel, sample);
     let mut path = start(scenery, pixel, &sampler);
     while sample < end {
-        if !step(scenery, &mut path, &sampler) {
-            accumulator.add(path.radiance, path.alpha, path.depth);
+        let spheres = scenery.spheres_at(path.time, path.left);
+        let hit = scenery.traversal.nearest_hit(&path.ray(), &spheres);
+        let hit = path.or_exit(hit);
+        if !shade(scenery, &mut path, &sampler, hit, receive_at_once) {
+            path.end(&mut accumulator);
             sample += 1;
             sampler = Sampler::new(launch.seed, pixel, sample);
             path = start(scenery, pixel, &sampler);
@@ -68,7 +72,8 @@ pub fn trace_pixel<T: Traversal>(
 
 /// Starts the path of a sample at the camera.
 #[inline]
-fn start<T: Traversal>(scenery: &Scenery<'_, T>, pixel: UVec2, sampler: &Sampler) -> Path {
+#[must_use]
+pub fn start<T: Traversal>(scenery: &Scenery<'_, T>, pixel: UVec2, sampler: &Sampler) -> Path {
     let (effects, launch) = (scenery.effects, scenery.launch);
     let camera = launch.camera;
     let size = launch.image_size;
@@ -108,6 +113,7 @@ fn start<T: Traversal>(scenery: &Scenery<'_, T>, pixel: UVec2, sampler: &Sampler
         media: Media::NONE,
         is_in_glass: 0,
         density: 0.0,
+        facing: Vec3::ZERO,
         time,
         events: 0,
         alpha: 1.0,
@@ -126,13 +132,31 @@ const LEAVES: u32 = u32::MAX - 1;
 /// The path goes on as if nothing were there.
 const PASSES: u32 = u32::MAX - 2;
 
-/// Takes a path to its next place and away from it. Returns false if the path ends.
+/// Traces a shadow ray and lets the path receive its light.
 #[inline]
-fn step<T: Traversal>(scenery: &Scenery<'_, T>, path: &mut Path, sampler: &Sampler) -> bool {
+fn receive_at_once<T: Traversal>(scenery: &Scenery<'_, T>, path: &mut Path, shadow: Shadow) {
+    let spheres = scenery.spheres_at(path.time, shadow.left);
+    if shadow.is_some() && !scenery.traversal.is_occluded(&shadow.ray, &spheres) {
+        path.receive(shadow.light);
+    }
+}
+
+/// Takes a path to its next place, where it has this hit, and away from it. Returns false if the
+/// path ends there. `receive` is told of the light of lamps and then of ambient light that the path
+/// finds there, and lets the path [receive](Path::receive) it, now or later, unless its ray is
+/// occluded.
+#[inline]
+#[must_use]
+pub fn shade<T: Traversal>(
+    scenery: &Scenery<'_, T>,
+    path: &mut Path,
+    sampler: &Sampler,
+    hit: Hit,
+    receive: impl Fn(&Scenery<'_, T>, &mut Path, Shadow) + Copy,
+) -> bool {
     let effects = scenery.effects;
     let numbers = sampler.at_vertex(path.bounces());
     let ray = path.ray();
-    let hit = scenery.nearest_hit(&ray, path.left, path.exit, path.time);
     let continues = effects.any(BOUNCING) & (path.bounces() <= scenery.most_bounces());
 
     let mut place = Place::none();
@@ -151,7 +175,7 @@ fn step<T: Traversal>(scenery: &Scenery<'_, T>, path: &mut Path, sampler: &Sampl
     if event == PASSES {
         return true;
     }
-    if event != LEAVES && !scatter(scenery, path, &place, event, continues, &numbers) {
+    if event != LEAVES && !scatter(scenery, path, &place, event, continues, &numbers, receive) {
         return false;
     }
     survives(path, numbers.roulette())
@@ -213,7 +237,7 @@ fn meet_surface<T: Traversal>(
         path.depth = hit.t;
     }
     if effects.any(Effects::EMISSION) && material.kind == Material::EMISSIVE {
-        arrive_at_lamp(scenery, path, sphere, material.volume);
+        arrive_at_lamp(scenery, path, place, material.volume);
         return ENDS;
     }
     if effects.any(Effects::GLASS)
@@ -265,6 +289,7 @@ fn scatter<T: Traversal>(
     lobe: u32,
     continues: bool,
     numbers: &VertexNumbers,
+    receive: impl Fn(&Scenery<'_, T>, &mut Path, Shadow) + Copy,
 ) -> bool {
     let effects = scenery.effects;
     let Place {
@@ -291,12 +316,13 @@ fn scatter<T: Traversal>(
     let seeks = effects.any(SEEKING) && !scenery.lights.is_empty();
     if seeks {
         let light = light_from_seeking(scenery, path, place, &vertex, continues, numbers);
-        path.radiance += path.throughput * light;
+        receive(scenery, path, light);
     }
     if effects.any(Effects::AMBIENT_OCCLUSION) && lobe == LAMBERT {
         let direction = cosine_hemisphere(facing, numbers.direction());
-        let light = ambient_light(scenery, path.time, place, direction);
-        path.radiance += path.throughput * material.color * light;
+        let weight = path.throughput * material.color;
+        let light = ambient_light(scenery, place, direction, weight);
+        receive(scenery, path, light);
         return false;
     }
     if !continues {
@@ -311,5 +337,8 @@ fn scatter<T: Traversal>(
     }
     path.throughput *= value / density;
     path.leave(place, direction, if seeks { density } else { 0.0 });
+    if effects.any(Effects::MANY_LIGHTS) {
+        path.facing = facing;
+    }
     true
 }

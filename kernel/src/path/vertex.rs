@@ -46,6 +46,8 @@ impl Vertex {
         let (x, y) = tangents(facing);
         let from = -Vec3::new(x.dot(incoming), y.dot(incoming), facing.dot(incoming));
         let (color, alpha, tables) = (material.color, material.parameter, scenery.tables);
+        // A GPU's threads would wait for those whose vertex is of metal.
+        let may_be_metal = cfg!(target_arch = "spirv") || lobe == METAL;
         Self {
             lobe,
             incoming,
@@ -53,7 +55,11 @@ impl Vertex {
             x,
             y,
             color,
-            metal: RoughMetal::new(color, alpha, from, tables),
+            metal: if scenery.effects.any(Effects::ROUGH_METAL) && may_be_metal {
+                RoughMetal::new(color, alpha, from, tables)
+            } else {
+                RoughMetal::NONE
+            },
             plastic: if scenery.effects.any(Effects::PLASTIC) && lobe == PLASTIC {
                 Plastic::new(color, material.volume.x, alpha, from, tables)
             } else {
