@@ -68,6 +68,25 @@ pub enum Error {
         device: String,
     },
 
+    /// The image of the sky is larger than the device can allocate or bind.
+    #[error(
+        "the image of the sky has {width} × {height} texels: a buffer of {needed} bytes, and {device} takes at most {limit}"
+    )]
+    SkyTooLarge {
+        /// Width of the image, in texels.
+        width: u32,
+        /// Height of the image, in texels.
+        height: u32,
+        /// The size of its largest buffer, in bytes.
+        needed: u64,
+        /// The device's limit, in bytes.
+        limit: u64,
+        /// The device's name.
+        device: String,
+        /// Width and height, in texels, of the largest image of this shape that the device takes.
+        fits: (u32, u32),
+    },
+
     /// The device has no memory left.
     #[error("out of memory on {device} while {during}")]
     OutOfMemory {
@@ -228,6 +247,9 @@ impl Error {
                 "render a smaller image or fewer spheres, or give the process more memory (`ulimit -v` and `ulimit -d` show its limits)"
                     .into()
             }
+            Self::SkyTooLarge { fits: (width, height), .. } => format!(
+                "scale the image to {width} × {height} texels, or use `--device cpu`, which uses the host's memory"
+            ),
             Self::BufferTooLarge { .. } | Self::OutOfMemory { .. } => {
                 "render fewer spheres or a smaller image, or use `--device cpu`, which uses the host's memory".into()
             }

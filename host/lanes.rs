@@ -463,12 +463,16 @@ mod tests {
         fn with<S: Simd>(simd: S, a: &[f32; LANES], b: &[f32; LANES]) -> [[f32; LANES]; 27] {
             let mut all = [[0.0; LANES]; 27];
             let singles = each(Single16::load(simd, a), Single16::load(simd, b));
-            let doubles = each(Double16::widened(simd, a), Double16::widened(simd, b));
+            let doubles = each(
+                Double16::widened(Single16::load(simd, a)),
+                Double16::widened(Single16::load(simd, b)),
+            );
             for (at, (single, double)) in singles.into_iter().zip(doubles).enumerate() {
                 single.store(&mut all[at]);
                 double.rounded().store(&mut all[13 + at]);
             }
-            let mask = Double16::widened(simd, a).simd_lt(Double16::widened(simd, b));
+            let mask = Double16::widened(Single16::load(simd, a))
+                .simd_lt(Double16::widened(Single16::load(simd, b)));
             let (one, zero) = (Single16::splat(simd, 1.0), Single16::splat(simd, 0.0));
             Single16::select(mask.narrowed(simd), one, zero).store(&mut all[26]);
             all
@@ -537,7 +541,7 @@ mod tests {
         for _ in 0..1000 {
             let a: [f32; LANES] = std::array::from_fn(|_| random.within(0.1, 9.0));
             let found = dispatch!(level, simd => {
-                let a = Double16::widened(simd, &a);
+                let a = Double16::widened(Single16::load(simd, &a));
                 let mut found = [[0.0; LANES]; 2];
                 double::square_root(a).rounded().store(&mut found[0]);
                 double::quotient(a.splat(1.0), a).rounded().store(&mut found[1]);

@@ -1005,13 +1005,22 @@ fn sampling_is_asked_for_and_reported() {
     )
     .assert()
     .success()
-    .stderr(contains("4 samples a pixel, noise"));
+    .stderr(contains("4 samples a pixel, noise at most"));
     let output = render(box_scene, &["--noise", "0.5", "--stats", "-"])
         .assert()
         .success();
     let stats = printed_json(&output);
     assert_eq!(stats["sampling"]["stopped_by"], "noise");
-    assert!(stats["sampling"]["noise"].as_f64() <= Some(0.5));
+    let sampling = &stats["sampling"];
+    assert!(sampling["noise"].as_f64() <= Some(0.5));
+    assert_eq!(sampling["is_upper_estimate"], false);
+    let number = |key: &str| sampling[key].as_f64().expect("a number");
+    let (fewest, mean, most) = (
+        number("samples"),
+        number("mean_samples"),
+        number("most_samples"),
+    );
+    assert!(16.0 <= fewest && fewest <= mean && mean <= most);
     assert!(stats["effects"].as_array().expect("effects").len() > 4);
     render(box_scene, &["--effects", "soft-shadow"])
         .assert()

@@ -18,7 +18,7 @@ use spherule::scene::{View, World};
 use spherule::{Device, Image, Scene};
 
 /// The scenes of the gallery.
-const GALLERY: [&str; 7] = [
+const GALLERY: [&str; 8] = [
     "one-weekend",
     "glass-marble",
     "box",
@@ -26,6 +26,7 @@ const GALLERY: [&str; 7] = [
     "fog",
     "soft-light",
     "ambient-occlusion",
+    "caustic",
 ];
 
 fn gallery(name: &str, width: u32, height: u32, samples: u32) -> Scene {
@@ -822,6 +823,68 @@ fn each_effect_is_called_for_by_its_key() {
             "{text}: {:#?}",
             scene.called_effects()
         );
+    }
+}
+
+/// Keys of `[image]` call for an effect only where it changes the image.
+#[test]
+fn keys_that_change_nothing_call_for_nothing() {
+    let of = |image: &str, scene: &str, asked: Effects| {
+        let text =
+            format!("[image]\n{image}\n{scene}\n[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\n");
+        let scene = spherule::read::toml::parse(Path::new("test.toml"), text).expect("a scene");
+        (scene.effects().any(asked), scene.samples())
+    };
+    let sky = "[sky]\nzenith = [1, 1, 1]\nsun_direction = [0, 1, 0]\nsun_size =";
+    let glass = "[materials.m]\nkind = \"glass\"\n[[sphere]]\ncenter = [3, 0, 0]\nradius = 1\nmaterial = \"m\"";
+    let clear = "glass_shadows = \"clear\"";
+    for (image, scene, asked, expected) in [
+        (
+            clear,
+            format!("{sky} 0\n{glass}"),
+            Effects::CLEAR_SHADOWS,
+            true,
+        ),
+        (
+            clear,
+            format!("{sky} 1\n{glass}"),
+            Effects::CLEAR_SHADOWS,
+            false,
+        ),
+        (clear, format!("{sky} 0"), Effects::CLEAR_SHADOWS, false),
+        (
+            "glass_shadows = \"dark\"",
+            format!("{sky} 0\n{glass}"),
+            Effects::CLEAR_SHADOWS,
+            false,
+        ),
+        (
+            "filter = \"gaussian\"",
+            String::new(),
+            Effects::FILTER,
+            true,
+        ),
+        ("filter_width = 2", String::new(), Effects::FILTER, true),
+        (
+            "filter = \"gaussian\"\nsamples = 1",
+            String::new(),
+            Effects::FILTER,
+            false,
+        ),
+        (
+            "filter = \"box\"\nfilter_width = 1",
+            String::new(),
+            Effects::FILTER,
+            false,
+        ),
+        ("clamp = 2", format!("{sky} 0"), Effects::CLAMP, true),
+        ("clamp = 2", String::new(), Effects::CLAMP, false),
+    ] {
+        let (found, samples) = of(image, &scene, asked);
+        assert_eq!(found, expected, "{image}\n{scene}");
+        if asked == Effects::FILTER {
+            assert_eq!(samples > 1, expected, "{image}");
+        }
     }
 }
 

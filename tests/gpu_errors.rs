@@ -8,8 +8,10 @@ use std::time::Duration;
 use common::{all_adapters, gpus, noop_adapter, open, open_with_limits, skips};
 use spherule::accel::Acceleration;
 use spherule::device::{Access, Device, DeviceChoice, Gpu, GpuOptions, Kernel, Module};
-use spherule::kernel::{Hit, Ray, Rung, Shading, Sphere, spirv};
+use spherule::kernel::{Hit, Material, Ray, Rung, Shading, Sphere, spirv};
 use spherule::render::{QUIET, Settings, paths, render};
+use spherule::scene::World;
+use spherule::scene::surroundings::{EnvironmentImage, Surroundings};
 use spherule::trace::GpuTracer;
 use spherule::{Error, Scene, kernel_module, wgpu};
 
@@ -202,6 +204,59 @@ fn buffer_too_large() {
         );
         assert_says(&error, &["spheres", "65552", "65536"]);
         assert!(gpu.upload("spheres", &spheres[1..]).is_ok());
+    }
+}
+
+/// An image of the sky that the device does not take is refused, and one of the size that the
+/// message names is not.
+#[test]
+fn sky_too_large() {
+    if skips("sky_too_large") {
+        return;
+    }
+    for adapter in all_adapters() {
+        let limits = wgpu::Limits {
+            max_storage_buffer_binding_size: 1 << 16,
+            ..adapter.limits()
+        };
+        let device = Device::Gpu(Box::new(open_with_limits(adapter, limits)));
+        let rendered = |width: u32, height: u32| {
+            let mut world = World::default();
+            let white = world.add_material(Material::diffuse(glam::Vec3::ONE));
+            world.add(Sphere::new(glam::Vec3::ZERO, 1.0), white);
+            let mut scene = Scene::new(world);
+            (scene.width, scene.height) = (8, 8);
+            scene.sampling.samples = Some(4);
+            scene.sky = Some(Surroundings {
+                horizon: glam::Vec3::ZERO,
+                zenith: glam::Vec3::ZERO,
+                sun: None,
+                rotation: 0.0,
+                image: Some(EnvironmentImage {
+                    width,
+                    height,
+                    texels: vec![glam::Vec3::ONE; (width * height) as usize],
+                }),
+            });
+            render(&scene, Settings::default(), &device, QUIET)
+        };
+        let error = rendered(128, 64).expect_err("98,304 bytes");
+        assert_is!(
+            error,
+            Error::SkyTooLarge {
+                needed: 98_304,
+                limit: 65_536,
+                ..
+            }
+        );
+        assert_says(&error, &["128 × 64", "98304", "65536"]);
+        assert!(error.help().contains("104 × 52"), "{}", error.help());
+        let image = rendered(104, 52).expect("it fits").image;
+        let corner = image.pixels()[0].color();
+        assert!(
+            (corner - glam::Vec3::ONE).abs().max_element() < 1e-4,
+            "{corner}"
+        );
     }
 }
 

@@ -184,11 +184,13 @@ impl Buffers {
 fn offsets_of_host(value: &BTreeMap<&str, u32>, has_f64: bool) -> Vec<Vec<u32>> {
     let fields = |name: &str| -> Vec<u32> {
         let prefix = format!("{name}.");
-        layout::NAMES
+        let mut offsets: Vec<u32> = layout::NAMES
             .iter()
             .filter(|entry| entry.starts_with(&prefix))
             .map(|entry| value[entry])
-            .collect()
+            .collect();
+        offsets.sort_unstable();
+        offsets
     };
     // In the module, padding is a member, too.
     let mut expected: Vec<Vec<u32>> = vec![
@@ -206,7 +208,8 @@ fn offsets_of_host(value: &BTreeMap<&str, u32>, has_f64: bool) -> Vec<Vec<u32>> 
         [fields("Light"), vec![44]].concat(),
         [fields("Sky"), vec![72]].concat(),
         [fields("Fog"), vec![36, 40]].concat(),
-        fields("PathLaunch"),
+        [fields("Filter"), vec![8]].concat(),
+        [fields("PathLaunch"), vec![312]].concat(),
         fields("Accumulator"),
         fields("Node"),
     ];

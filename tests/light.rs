@@ -9,9 +9,12 @@ use std::sync::OnceLock;
 use common::{all_adapters, device};
 use glam::{DVec3, Vec3};
 use spherule::kernel::color::luminance;
+use spherule::kernel::filter::Filter;
 use spherule::kernel::{Effects, Material, Rung, Sphere};
 use spherule::render::{EffectChoice, QUIET, Settings, render};
-use spherule::scene::surroundings::{EnvironmentImage, PointLight, Sun, Surroundings};
+use spherule::scene::surroundings::{
+    EnvironmentImage, GlassShadows, PointLight, Sun, Surroundings,
+};
 use spherule::scene::{View, World};
 use spherule::{Device, Scene};
 
@@ -611,6 +614,406 @@ fn the_default_bounces_are_enough_for_hollow_glass() {
         few.sampling.max_bounces = 8;
         let (lost, _) = mean(&few, &settings(), device);
         assert!(lost < 0.995, "{name}: {lost}");
+    }
+}
+
+/// A sphere above the place: how far along the ground, how high, its radius and its material.
+type Above = (f64, f64, f32, Material);
+
+/// A white place 4 below a point of intensity 5, with spheres above it.
+fn below(spheres: &[Above], shadows: GlassShadows) -> Place {
+    let mut place = Place::on(1e3, UPS[1]);
+    for (along, height, radius, material) in spheres {
+        let id = place.scene.world.add_material(*material);
+        let center = place.point(*along, *height);
+        place.scene.world.add(Sphere::new(center, *radius), id);
+    }
+    place.scene.lights.push(PointLight {
+        position: place.point(0.0, 4.0),
+        intensity: Vec3::splat(5.0),
+    });
+    place.scene.sampling.samples = Some(16);
+    place.scene.sampling.glass_shadows = shadows;
+    place
+}
+
+/// What an even point of intensity 5 at a distance of 4 gives.
+const UNSHADED: f64 = 5.0 / 16.0 / std::f64::consts::PI;
+
+/// The share of light that a surface of glass of index n lets through at this angle: Fresnel's
+/// equations.
+fn let_through(index: f64, sine: f64) -> f64 {
+    let (inside, outside) = (
+        (1.0 - (sine / index).powi(2)).sqrt(),
+        (1.0 - sine * sine).sqrt(),
+    );
+    let s = (outside - index * inside) / (outside + index * inside);
+    let p = (index * outside - inside) / (index * outside + inside);
+    1.0 - 0.5 * (s * s + p * p)
+}
+
+/// Light without extent goes straight through glass on request: it is absorbed by the length of its
+/// way and loses what surfaces reflect. Otherwise glass blocks it, and what is not glass always
+/// does.
+#[test]
+fn clear_shadows_are_what_glass_leaves_of_the_light() {
+    let glass = |index: f32, sigma: f32| Material::glass(index, Vec3::splat(sigma));
+    let hollow = |index: f32, sigma: f32| Material::bubble(index, Vec3::splat(sigma));
+    let sigma = 0.75;
+    let a = f64::from(sigma);
+    let straight = let_through(1.5, 0.0);
+    let cases: [(&str, Vec<Above>, f64); 9] = [
+        (
+            "a ball",
+            vec![(0.0, 3.0, 0.5, glass(1.0, sigma))],
+            (-a).exp(),
+        ),
+        (
+            "a hollow ball",
+            vec![
+                (0.0, 3.0, 0.5, glass(1.0, sigma)),
+                (0.0, 3.0, 0.25, hollow(1.0, sigma)),
+            ],
+            (-0.5 * a).exp(),
+        ),
+        (
+            "two balls",
+            vec![
+                (0.0, 2.75, 0.25, glass(1.0, sigma)),
+                (0.0, 3.5, 0.375, glass(1.0, sigma)),
+            ],
+            (-1.25 * a).exp(),
+        ),
+        (
+            "two balls that overlap",
+            vec![
+                (0.0, 2.75, 0.25, glass(1.0, 0.0)),
+                (0.0, 3.0, 0.5, glass(1.0, sigma)),
+            ],
+            (-0.5 * a).exp(),
+        ),
+        (
+            "a ball that reflects",
+            vec![(0.0, 3.0, 0.5, glass(1.5, sigma))],
+            (-a).exp() * straight.powi(2),
+        ),
+        (
+            "a hollow ball that reflects",
+            vec![
+                (0.0, 3.0, 0.5, glass(1.5, 0.0)),
+                (0.0, 3.0, 0.25, hollow(1.5, 0.0)),
+            ],
+            straight.powi(4),
+        ),
+        (
+            "a ball beside the middle",
+            vec![(-0.375, 3.0, 0.5, glass(1.5, sigma))],
+            (-a * (0.25_f64 - 0.375 * 0.375).sqrt() * 2.0).exp() * let_through(1.5, 0.75).powi(2),
+        ),
+        (
+            "a ball around the light",
+            vec![(0.0, 4.0, 0.5, glass(1.5, sigma))],
+            (-0.5 * a).exp() * straight,
+        ),
+        (
+            "a ball and chalk",
+            vec![
+                (0.0, 3.0, 0.5, glass(1.0, 0.0)),
+                (0.0, 3.75, 0.125, Material::diffuse(Vec3::ONE)),
+            ],
+            0.0,
+        ),
+    ];
+    for (name, spheres, share) in cases {
+        let clear = below(&spheres, GlassShadows::Clear).scene;
+        assert!(clear.effects().any(Effects::CLEAR_SHADOWS));
+        assert_light(&clear, share * UNSHADED, name);
+        let dark = below(&spheres, GlassShadows::Dark).scene;
+        assert!(!dark.effects().any(Effects::CLEAR_SHADOWS));
+        assert_light(&dark, 0.0, name);
+    }
+}
+
+/// A sun without extent shines through glass as a point does; a place that is in glass itself gets
+/// what the way there leaves, and fog is outside of glass.
+#[test]
+fn clear_shadows_are_of_suns_in_glass_and_in_fog_too() {
+    let ball: Above = (0.0, 3.0, 0.5, Material::glass(1.0, Vec3::splat(0.75)));
+    let mut place = below(&[ball], GlassShadows::Clear);
+    place.scene.lights.clear();
+    place.scene.sky = Some(Surroundings {
+        sun: Some(Sun {
+            direction: place.up.as_vec3(),
+            size: 0.0,
+            irradiance: Vec3::splat(2.0),
+        }),
+        ..even_sky(Vec3::ZERO)
+    });
+    let share = (-0.75_f64).exp();
+    assert_light(&place.scene, 2.0 / std::f64::consts::PI * share, "a sun");
+
+    let around: Above = (0.0, 0.0, 1.5, Material::glass(1.0, Vec3::splat(0.25)));
+    let mut place = below(&[around], GlassShadows::Clear);
+    place.scene.sampling.max_bounces = 2;
+    // To the eye and to the light.
+    let share = (-0.25 * (1.5_f64 + 1.5)).exp();
+    assert_light(&place.scene, UNSHADED * share, "in glass");
+
+    let clear: Above = (0.0, 3.0, 0.5, Material::glass(1.0, Vec3::ZERO));
+    let mut place = below(&[clear], GlassShadows::Clear);
+    place.scene.sampling.samples = Some(1024);
+    place.scene.fog = Some(spherule::scene::FogBall {
+        medium: spherule::kernel::fog::Fog {
+            radius: 50.0,
+            extinction: 0.25,
+            ..Default::default()
+        },
+    });
+    let way = (2.0_f64 * 2.0 + 0.5 * 0.5).sqrt() + 3.0;
+    assert_light(&place.scene, UNSHADED * (-0.25 * way).exp(), "in fog");
+}
+
+/// Lights with extent shine through glass by chance, and not once more.
+#[test]
+fn clear_shadows_change_no_light_with_extent() {
+    let scene = |shadows: GlassShadows| {
+        let ball: Above = (0.0, 2.0, 0.5, Material::glass(1.0, Vec3::splat(0.5)));
+        let mut place = below(&[ball], shadows);
+        place.add_lamp(0.5);
+        // A light that gives none calls for the effect.
+        place.scene.lights[0].intensity = Vec3::ZERO;
+        place.scene.sampling.max_bounces = 4;
+        place.scene
+    };
+    let clear = scene(GlassShadows::Clear);
+    assert!(clear.effects().any(Effects::CLEAR_SHADOWS));
+    for (name, device) in devices() {
+        let pixels = |scene: &Scene| {
+            let rendered = render(scene, settings(), device, QUIET).expect("the scene renders");
+            rendered.image.pixels().to_vec()
+        };
+        assert!(
+            pixels(&clear) == pixels(&scene(GlassShadows::Dark)),
+            "{name}"
+        );
+        let (light, _) = mean(&clear, &settings(), device);
+        assert!(light > 0.0, "{name}: {light}");
+    }
+}
+
+/// Light passes a thousand surfaces and no more, so that its way ends.
+#[test]
+fn clear_shadows_have_an_end() {
+    for (count, share) in [(500, 1.0), (520, 0.0)] {
+        let ball = |at: usize| -> Above {
+            let height = 2.5 + 1.4 * at as f64 / count as f64;
+            (0.0, height, 1e-3, Material::glass(1.0, Vec3::ZERO))
+        };
+        let spheres: Vec<Above> = (0..count).map(ball).collect();
+        let mut scene = below(&spheres, GlassShadows::Clear).scene;
+        scene.sampling.samples = Some(1);
+        scene.view = scene.view.map(|view| View {
+            vertical_fov: 1e-3,
+            ..view
+        });
+        let rendered = render(&scene, settings(), &Device::Cpu, QUIET).expect("the scene renders");
+        let middle = f64::from(rendered.image.pixels()[12 * 24 + 12].color().x);
+        let expected = share * UNSHADED;
+        assert!(
+            (middle - expected).abs() <= 1e-3 * expected,
+            "{count}: {middle}"
+        );
+    }
+}
+
+/// A pixel's share of a filter below an edge, at `edge` pixels from the pixel's middle.
+fn share_below(filter: Filter, edge: f64) -> f64 {
+    let at = (2.0 * edge / f64::from(filter.width)).clamp(-1.0, 1.0);
+    let density = |place: f64| match filter.kind {
+        Filter::GAUSSIAN => (-4.5 * place * place).exp(),
+        Filter::BLACKMAN_HARRIS => {
+            let wave = |n: f64| (n * std::f64::consts::PI * place).cos();
+            0.35875 + 0.48829 * wave(1.0) + 0.14128 * wave(2.0) + 0.01168 * wave(3.0)
+        }
+        _ => 1.0,
+    };
+    let steps = 1000;
+    let below = |end: f64| {
+        let middle = |step: i32| -1.0 + (end + 1.0) * (f64::from(step) + 0.5) / f64::from(steps);
+        (0..steps).map(|step| density(middle(step))).sum::<f64>() * (end + 1.0)
+    };
+    below(at) / below(1.0)
+}
+
+/// A straight edge is shown as the filter's integral, wherever it is in a pixel.
+#[test]
+fn filters_show_edges_as_their_integrals() {
+    const SIZE: u32 = 9;
+    let wide = Filter::new(Filter::BOX, 2.0);
+    let filters = Filter::NAMED.map(|(_, filter)| filter);
+    for filter in filters.into_iter().chain([wide]) {
+        for offset in [0.0, 0.3, 0.75] {
+            // The sphere touches the ray through the edge, which is so many pixels below the
+            // middle of the image, and so it is at the left and the right.
+            let pixel = 2.0 * 10_f64.to_radians().tan() / f64::from(SIZE);
+            let dip = (offset * pixel).atan();
+            let radius = 1e4;
+            let mut world = World::default();
+            let glow = world.add_material(Material::emissive(Vec3::ONE));
+            let center = Vec3::NEG_Y * (radius / dip.cos()) as f32;
+            world.add(Sphere::new(center, radius as f32), glow);
+            let mut scene = Scene::new(world);
+            (scene.width, scene.height) = (1, SIZE);
+            scene.background = Vec3::ZERO;
+            scene.view = Some(View {
+                eye: Vec3::ZERO,
+                target: Vec3::NEG_Z,
+                up: Vec3::Y,
+                vertical_fov: 20.0,
+            });
+            scene.sampling.samples = Some(4096);
+            scene.sampling.filter = filter;
+            for (name, device) in devices() {
+                let rendered =
+                    render(&scene, settings(), device, QUIET).expect("the scene renders");
+                for (row, found) in rendered.image.pixels().iter().enumerate() {
+                    let middle = row as f64 + 0.5 - 0.5 * f64::from(SIZE);
+                    let expected = share_below(filter, middle - offset);
+                    let found = f64::from(found.color().x);
+                    assert!(
+                        (found - expected).abs() < 2e-3,
+                        "{filter:?}, {offset}, {row} on {name}: {found} {expected}"
+                    );
+                }
+            }
+        }
+    }
+}
+
+/// What is the same everywhere stays as it is, with every filter, up to the image's edge.
+#[test]
+fn filters_keep_an_even_sky() {
+    let mut scene = through(&[(-50.0, 1.0, Material::diffuse(Vec3::ONE))], 0.0);
+    scene.world.spheres.truncate(1);
+    scene.world.material_ids.truncate(1);
+    scene.sky = Some(even_sky(Vec3::new(0.25, 0.5, 2.0)));
+    for (filter_name, filter) in Filter::NAMED {
+        scene.sampling.filter = filter;
+        assert_eq!(
+            scene.effects().any(Effects::FILTER),
+            filter.kind != Filter::BOX
+        );
+        for (name, device) in devices() {
+            let rendered = render(&scene, settings(), device, QUIET).expect("the scene renders");
+            let mut pixels = rendered.image.pixels().iter();
+            let is_even = pixels.all(|pixel| pixel.color() == Vec3::new(0.25, 0.5, 2.0));
+            assert!(is_even, "{filter_name} on {name}");
+        }
+    }
+}
+
+/// A white floor, half of it in the shadow of a glass ball that is out of sight, under a small
+/// lamp: through the ball a path meets the lamp by chance alone.
+fn with_bright_dots(clamp: Option<f32>) -> Scene {
+    let mut world = World::default();
+    let white = world.add_material(Material::diffuse(Vec3::splat(0.8)));
+    let glass = world.add_material(Material::glass(1.5, Vec3::ZERO));
+    let lamp = world.add_material(Material::emissive(Vec3::new(40.0, 20.0, 10.0)));
+    world.add(Sphere::new(Vec3::NEG_Y * 100.0, 100.0), white);
+    world.add(Sphere::new(Vec3::Y, 1.0), glass);
+    world.add(Sphere::new(Vec3::new(2.0, 5.0, 1.0), 0.5), lamp);
+    let mut scene = Scene::new(world);
+    (scene.width, scene.height) = (48, 32);
+    scene.background = Vec3::ZERO;
+    scene.view = Some(View {
+        eye: Vec3::new(-4.0, 2.0, -2.0),
+        target: Vec3::new(-1.6, 0.0, -0.8),
+        up: Vec3::Y,
+        vertical_fov: 12.0,
+    });
+    scene.sampling.samples = Some(64);
+    scene.sampling.max_bounces = 8;
+    scene.sampling.clamp = clamp;
+    scene
+}
+
+/// Indirect light is limited: no pixel becomes brighter, the noise is less, and a limit that is
+/// never reached, or none, changes nothing.
+#[test]
+fn the_clamp_takes_bright_dots_away() {
+    let none = with_bright_dots(None);
+    assert!(!none.effects().any(Effects::CLAMP));
+    for (name, device) in devices() {
+        let image = |clamp: Option<f32>| {
+            let scene = with_bright_dots(clamp);
+            let rendered = render(&scene, settings(), device, QUIET).expect("the scene renders");
+            let pixels = rendered.image.pixels().iter();
+            let colors: Vec<Vec3> = pixels.map(|pixel| pixel.color()).collect();
+            let light: f64 = colors.iter().map(|c| f64::from(luminance(*c))).sum();
+            let noise = rendered.reached.expect("samples").noise * light;
+            (colors, light, noise, rendered.image.remarks)
+        };
+        let (plain, light, noise, remarks) = image(None);
+        assert!(remarks.is_empty(), "{name}: {remarks}");
+        let (clamped, less, less_noise, remarks) = image(Some(0.5));
+        assert!(remarks.contains("clamp = 0.5"), "{name}: {remarks}");
+        assert!(
+            less < light && less_noise < 0.5 * noise,
+            "{name}: {light} ± {noise}, {less} ± {less_noise}"
+        );
+        let (unreached, ..) = image(Some(1e12));
+        for ((plain, clamped), unreached) in plain.iter().zip(&clamped).zip(&unreached) {
+            let rounding = *plain * 1e-5 + Vec3::splat(1e-6);
+            assert!(
+                clamped.cmple(*plain + rounding).all()
+                    && (*unreached - *plain).abs().cmple(rounding).all(),
+                "{name}: {plain}, {clamped}, {unreached}"
+            );
+        }
+    }
+}
+
+/// A pixel of one sample gets no more indirect light than the limit, of the same hue, and all of
+/// its direct light. Without indirect light an image is that of no bounces.
+#[test]
+fn the_clamp_is_of_indirect_light_alone() {
+    for (name, device) in devices() {
+        let colors = |clamp: f32| -> Vec<Vec3> {
+            let mut scene = with_bright_dots(Some(clamp));
+            (scene.width, scene.height) = (192, 128);
+            scene.sampling.samples = Some(1);
+            let rendered = render(&scene, settings(), device, QUIET).expect("the scene renders");
+            let pixels = rendered.image.pixels().iter();
+            pixels.map(|pixel| pixel.color()).collect()
+        };
+        let (all, some, direct) = (colors(1e12), colors(0.25), colors(1e-30));
+        let mut limited = 0;
+        for ((all, some), direct) in all.iter().zip(&some).zip(&direct) {
+            let (indirect, left) = (*all - *direct, *some - *direct);
+            let rounding = 1e-5 * all.max_element() + 1e-6;
+            let brightest = indirect.max_element();
+            let expected = indirect
+                * if brightest > 0.25 {
+                    0.25 / brightest
+                } else {
+                    1.0
+                };
+            assert!(
+                (left - expected).abs().max_element() <= rounding,
+                "{name}: {left} {expected}"
+            );
+            limited += u32::from(brightest > 0.25);
+        }
+        assert!(limited > 0, "{name}");
+        let mut scene = with_bright_dots(Some(1e-30));
+        let (direct, error) = mean(&scene, &settings(), device);
+        scene.sampling.clamp = None;
+        scene.sampling.max_bounces = 0;
+        let (no_bounces, other) = mean(&scene, &settings(), device);
+        assert!(
+            (direct - no_bounces).abs() < 0.05 * no_bounces,
+            "{name}: {direct} ± {error}, {no_bounces} ± {other}"
+        );
     }
 }
 

@@ -414,7 +414,7 @@ fn steps_table(report: &AccuracyReport) -> String {
     }
     text.push_str(
         "\nerror: root mean square of the luminance against the image of many samples, over the mean.\n\
-         estimate: the render's own, which assumes that samples are independent, though they are stratified.\n\
+         estimate: the render's own, an upper one: it takes the samples for independent, though they are stratified.\n\
          error² × ms is constant if the error falls as 1/√N, and falls if the error falls faster.\n",
     );
     text

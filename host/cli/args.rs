@@ -104,13 +104,15 @@ pub(super) struct RenderArguments {
     #[arg(long, value_name = "SECONDS", value_parser = positive)]
     pub(super) time_limit: Option<f64>,
 
-    /// Take no more samples when the noise is this low: the pixels' standard error over the mean
-    /// luminance, 0.01 for 1 %
+    /// Take samples of each tile of 16 × 16 pixels, 16 at least, until its noise is this low: the
+    /// pixels' standard error over the tile's mean luminance, 0.01 for 1 %; what is darker than a
+    /// sixteenth of the image is measured against that
     #[arg(long, value_name = "TARGET", value_parser = positive)]
     pub(super) noise: Option<f64>,
 
     /// Render on the GPU and on the CPU and compare: fail if more than 0.1 % of the pixels differ
-    /// by more than 2/255
+    /// by more than 2/255. Of images of light paths, more may differ, up to 5 %, but no region by
+    /// more than chance
     #[arg(long, conflicts_with_all = ["time_limit", "noise"])]
     pub(super) check: bool,
 

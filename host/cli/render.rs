@@ -1,5 +1,6 @@
 //! `spherule render`: from a file to an image.
 
+use std::fmt::Write as _;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -16,6 +17,7 @@ use super::{note, write_json};
 use crate::accel::Acceleration;
 use crate::device::{Device, DeviceChoice};
 use crate::error::{Error, Result};
+use crate::film::agreement::{Agreement, Compared};
 use crate::film::compare::{Comparison, Tolerance};
 use crate::plural::count_of;
 use crate::read::text::uncompressed;
@@ -68,6 +70,8 @@ struct Check {
     against: String,
     #[serde(flatten)]
     comparison: Comparison,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    agreement: Option<Agreement>,
     passed: bool,
 }
 
@@ -454,10 +458,23 @@ fn extent(rendered: &Rendered) -> String {
     let noise = if reached.noise.is_infinite() {
         String::new()
     } else {
-        format!(", noise {:.2} %", 100.0 * reached.noise)
+        let bound = if reached.is_upper_estimate {
+            " at most"
+        } else {
+            ""
+        };
+        format!(", noise{bound} {:.2} %", 100.0 * reached.noise)
     };
     let samples = count_of(reached.samples as usize, "sample");
-    format!("{samples} a pixel{by}{noise}")
+    let samples = if reached.is_upper_estimate || reached.samples == reached.most_samples {
+        format!("{samples} a pixel")
+    } else {
+        format!(
+            "{} to {} samples a pixel, {:.1} in the mean",
+            reached.samples, reached.most_samples, reached.mean_samples
+        )
+    };
+    format!("{samples}{by}{noise}")
 }
 
 /// Renders on the other path and compares; `None` if a signal came first.
@@ -473,36 +490,76 @@ fn check(
         note("interrupted: the check was not finished");
         return Ok(None);
     }
-    let comparison = Comparison::of(&rendered.image, &again.image, Tolerance::default())
-        .ok_or_else(|| Error::Image {
-            path: PathBuf::new(),
-            reason: "the two paths made images of different sizes".into(),
-            help: "this is a mistake of spherule's; please report it".into(),
-        })?;
-    let passed = comparison.is_within();
-    if !arguments.quiet {
-        note(&format!(
-            "{}: against {}, largest difference {:.2}/255, mean {:.5}/255, {} of {} pixels off by more than {}/255 \
-             (limit {:.1} %)",
-            if passed {
-                "check passed"
-            } else {
-                "CHECK FAILED"
-            },
-            other.name(),
-            comparison.largest,
-            comparison.mean,
-            comparison.differing,
-            comparison.pixels,
-            comparison.tolerance.channel,
-            comparison.tolerance.share * 100.0,
-        ));
-    }
-    Ok(Some(Check {
+    let (first, second) = (&rendered.image, &again.image);
+    let (tolerance, agreement) = match rendered.reached {
+        Some(reached) => {
+            let tolerance = Tolerance::of_paths(reached.samples);
+            (tolerance, Agreement::of(first, second))
+        }
+        None => (Tolerance::default(), None),
+    };
+    let comparison = Comparison::of(first, second, tolerance).ok_or_else(|| Error::Image {
+        path: PathBuf::new(),
+        reason: "the two paths made images of different sizes".into(),
+        help: "this is a mistake of spherule's; please report it".into(),
+    })?;
+    let check = Check {
         against: other.name(),
+        passed: comparison.is_within() && agreement.as_ref().is_none_or(Agreement::is_within),
         comparison,
-        passed,
-    }))
+        agreement,
+    };
+    say(arguments, &check.text());
+    Ok(Some(check))
+}
+
+impl Check {
+    /// What was compared, and what came of it.
+    fn text(&self) -> String {
+        let Comparison {
+            largest,
+            mean,
+            differing,
+            pixels,
+            tolerance,
+        } = self.comparison;
+        let result = if self.passed {
+            "check passed"
+        } else {
+            "CHECK FAILED"
+        };
+        let mut text = format!(
+            "{result}: against {}, largest difference {largest:.2}/255, mean {mean:.5}/255, \
+             {differing} of {pixels} pixels off by more than {}/255 (limit {:.1} %)",
+            self.against,
+            tolerance.channel,
+            tolerance.share * 100.0,
+        );
+        if let Some(Agreement {
+            worst,
+            limit,
+            regions,
+        }) = &self.agreement
+        {
+            let compared = match worst.compared {
+                Compared::Mean => "the mean light",
+                Compared::Brighter => "the number of brighter pixels",
+            };
+            // Writing to a String cannot fail.
+            let _ = write!(
+                text,
+                "; of {regions} regions, {} × {} pixels at ({}, {}) differ most: by {:.1} standard \
+                 errors in {compared}, {} (limit {limit:.1})",
+                worst.width,
+                worst.height,
+                worst.x,
+                worst.y,
+                worst.errors,
+                worst.channel.name(),
+            );
+        }
+        text
+    }
 }
 
 /// The input's name with `.png`, in the current directory.

@@ -202,6 +202,14 @@ impl Gpu {
         self.device.limits()
     }
 
+    /// The most bytes of a storage buffer that a kernel can bind.
+    pub(crate) fn largest_storage(&self) -> u64 {
+        let limits = self.device.limits();
+        limits
+            .max_buffer_size
+            .min(limits.max_storage_buffer_binding_size)
+    }
+
     /// Arranges this many workgroups in rows, if they exceed the device's limit along x.
     #[must_use]
     pub fn rows_of(&self, workgroups: u32) -> [u32; 3] {
@@ -432,6 +440,26 @@ impl Gpu {
         })
     }
 
+    /// Overwrites the first elements of a buffer with `elements`, in pieces, so that no more than
+    /// one of them is held in memory on the way.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Validation`], [`Error::OutOfMemory`], [`Error::DeviceLost`].
+    pub(crate) fn write_first<T: Pod>(&self, buffer: &Buffer<T>, elements: &[T]) -> Result<()> {
+        let during = format!("writing {}", buffer.label);
+        self.check_owner(buffer.owner, &buffer.label, &during)?;
+        let bytes: &[u8] = bytemuck::cast_slice(&elements[..elements.len().min(buffer.len())]);
+        for (index, piece) in bytes.chunks(READBACK_BYTES).enumerate() {
+            let offset = (index * READBACK_BYTES) as u64;
+            self.watch.checked(&self.device, &during, || {
+                self.queue.write_buffer(&buffer.raw, offset, piece);
+                self.queue.submit([]);
+            })?;
+        }
+        Ok(())
+    }
+
     /// Storage for `len` elements, all zero.
     ///
     /// # Errors
@@ -509,18 +537,20 @@ impl Gpu {
 
     /// The bytes that `len` elements take; an error if that exceeds the device's limits.
     fn storage_size<T>(&self, label: &str, len: usize, usage: wgpu::BufferUsages) -> Result<u64> {
-        let limits = self.device.limits();
         let needed = (size_of::<T>() as u64)
             .saturating_mul(len.max(1) as u64)
             .checked_next_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT)
             .unwrap_or(u64::MAX);
-        let binding = if usage.contains(wgpu::BufferUsages::UNIFORM) {
-            limits.max_uniform_buffer_binding_size
+        let limit = if usage.contains(wgpu::BufferUsages::UNIFORM) {
+            let limits = self.device.limits();
+            limits
+                .max_buffer_size
+                .min(limits.max_uniform_buffer_binding_size)
         } else {
-            limits.max_storage_buffer_binding_size
+            self.largest_storage()
         };
         // Leaves room for what wgpu adds to a size in 64 bits.
-        let limit = limits.max_buffer_size.min(binding).min(1 << 62);
+        let limit = limit.min(1 << 62);
         if needed > limit {
             return Err(Error::BufferTooLarge {
                 label: label.into(),

@@ -29,6 +29,26 @@ impl Default for Tolerance {
     }
 }
 
+/// The share of the light paths that a rounding may send elsewhere: of a scene with glass and
+/// mirrors, a few in ten thousand were seen to be, on the rung `textbook`.
+const PATHS_ELSEWHERE: f64 = 0.001;
+/// The most of the pixels that may differ, however many paths each has.
+const MOST: f64 = 0.05;
+
+impl Tolerance {
+    /// For images of so many light paths a pixel, of which one in a thousand may go elsewhere: a
+    /// pixel differs if one of its paths does. More than a twentieth of the pixels never may.
+    /// Whether what differs is chance is left to [`Agreement`](super::agreement::Agreement).
+    #[must_use]
+    pub fn of_paths(samples: u32) -> Self {
+        let all_stay = (1.0 - PATHS_ELSEWHERE).powf(f64::from(samples.max(1)));
+        Self {
+            share: (1.0 - all_stay).min(MOST),
+            ..Self::default()
+        }
+    }
+}
+
 /// The difference between two images of the same size and shading.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Comparison {

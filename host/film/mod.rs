@@ -4,8 +4,10 @@
 //! | --- | --- |
 //! | [`encode`] | from pixels to 8-bit colours |
 //! | [`compare`] | the difference between two images |
+//! | [`agreement`] | whether that of light paths is chance |
 //! | [`flip`] | that difference as somebody sees it |
 
+pub mod agreement;
 pub mod compare;
 pub mod encode;
 pub mod flip;
@@ -30,6 +32,8 @@ pub struct Image {
     alpha: Vec<f32>,
     /// How light becomes 8-bit colours; linear images are left as they are.
     pub develop: Develop,
+    /// What a reader of the image should know of it; files hold it as a comment. Empty for nothing.
+    pub remarks: String,
 }
 
 /// Room for what belongs to each pixel of an image, all of it zero. The system gives memory when it
@@ -66,6 +70,7 @@ impl Image {
             pixels,
             alpha: Vec::new(),
             develop: Develop::default(),
+            remarks: String::new(),
         })
     }
 

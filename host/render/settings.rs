@@ -29,8 +29,9 @@ pub struct Settings {
     pub effects: EffectChoice,
     /// Stops after this time of tracing, give or take a launch on a GPU.
     pub time_limit: Option<Duration>,
-    /// Stops taking samples when [`Reached::noise`](super::paths::Reached::noise) is as low as
-    /// this.
+    /// Stops taking samples of a tile of the image when its noise is as low as this: see
+    /// [`Reached::noise`](super::paths::Reached::noise). Samples are then other ones than without:
+    /// they belong to two groups, so that it can be told from them how far off they are.
     pub noise: Option<f64>,
 }
 

@@ -22,19 +22,33 @@ pub(super) struct Tiles {
 impl Tiles {
     /// The limits of `gpu` for an image of `size` pixels, each a `T` in the buffer that is written.
     pub(super) fn new<T>(gpu: &Gpu, size: UVec2) -> Self {
+        Self {
+            size,
+            threads: Self::threads(gpu),
+            max_pixels: Self::most::<T>(gpu)
+                .min(u64::from(size.x) * u64::from(size.y))
+                .max(1),
+        }
+    }
+
+    /// The most pixels, each a `T`, that a buffer of `gpu` holds and one readback moves.
+    pub(super) fn most<T>(gpu: &Gpu) -> u64 {
         let limits = gpu.limits();
         let binding = limits
             .max_storage_buffer_binding_size
             .min(limits.max_buffer_size);
-        Self {
-            size,
-            // A device that has none refuses the launch.
-            threads: u64::from(limits.max_compute_workgroups_per_dimension.max(1)) * WORKGROUP_SIDE,
-            max_pixels: (binding / size_of::<T>() as u64)
-                .min(MAX_PIXELS)
-                .min(u64::from(size.x) * u64::from(size.y))
-                .max(1),
-        }
+        (binding / size_of::<T>() as u64).min(MAX_PIXELS)
+    }
+
+    /// The most rows of a launch on `gpu`.
+    pub(super) fn most_rows(gpu: &Gpu) -> u32 {
+        Self::threads(gpu).min(u32::MAX.into()) as u32
+    }
+
+    /// The most threads along a side of a launch on `gpu`. A device that has none refuses it.
+    fn threads(gpu: &Gpu) -> u64 {
+        let groups = gpu.limits().max_compute_workgroups_per_dimension.max(1);
+        u64::from(groups) * WORKGROUP_SIDE
     }
 
     /// The pixels that the buffer must hold.

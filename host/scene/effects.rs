@@ -1,12 +1,13 @@
 //! Which effects a scene calls for, and by what.
 
 use glam::Vec3;
+use spherule_kernel::filter::Filter;
 use spherule_kernel::material::microfacet::SMOOTHEST;
 use spherule_kernel::surface::Surface;
 use spherule_kernel::{Effects, Material, Sphere};
 
 use super::surroundings::Sun;
-use super::{Sampling, Scene};
+use super::{GlassShadows, Sampling, Scene};
 use crate::plural::count_of;
 use crate::shown::shown;
 
@@ -31,13 +32,17 @@ const RANDOM: Effects = Effects::SOFT_SHADOWS
     .and(Effects::DEFOCUS)
     .and(Effects::MOTION_BLUR)
     .and(Effects::FOG)
-    .and(Effects::ENVIRONMENT);
+    .and(Effects::ENVIRONMENT)
+    .and(Effects::FILTER);
+
+/// Effects that a picture says of itself, because they change the light on request.
+const BIASED: Effects = Effects::CLEAR_SHADOWS.and(Effects::CLAMP);
 
 /// What in a scene calls for an effect, if anything does.
 type CalledBy = fn(&Asked<'_>) -> Option<String>;
 
-/// What calls for each effect, in the order of [`Effects`]. Antialiasing, the headlamp and large
-/// spheres are not among them: what calls for those are the others.
+/// What calls for each effect, in the order of [`Effects`]. Antialiasing, the headlamp, large
+/// spheres and the clamp are not among them: what calls for those are the others.
 const CALLS: &[(Effects, CalledBy)] = &[
     (Effects::HARD_SHADOWS, |asked| {
         let lights = asked.scene.lights.len();
@@ -49,9 +54,13 @@ const CALLS: &[(Effects, CalledBy)] = &[
             Some(_) => Some("[sky] sun_size = 0".into()),
         };
         // A path meets no light without extent behind glass.
-        let shadow = asked
-            .glass
-            .map_or("", |_| "; behind glass it gives no light");
+        let shadow = match asked.glass {
+            Some(_) if asked.scene.sampling.caustics => "; through one sphere of glass by caustics",
+            Some(_) if !asked.has_clear_glass() => {
+                "; behind glass it gives no light, unless [image] glass_shadows = \"clear\""
+            }
+            _ => "",
+        };
         by.map(|by| by + shadow)
     }),
     (Effects::SOFT_SHADOWS, |asked| {
@@ -154,8 +163,43 @@ const CALLS: &[(Effects, CalledBy)] = &[
     }),
     (Effects::MANY_LIGHTS, |asked| {
         let lights = asked.scene.lights.len() + asked.count_of_glowing();
-        let is_many = asked.seeks_light() && lights >= MANY;
+        // By caustics a lamp is chosen by its power.
+        let is_listed = asked.scene.sampling.caustics;
+        let is_many = asked.seeks_light() && lights >= MANY && !is_listed;
         is_many.then(|| format!("{lights} lights"))
+    }),
+    (Effects::CLEAR_SHADOWS, |asked| {
+        let is_called = asked.has_clear_glass() && asked.seeks_light() && asked.has_hard_light();
+        is_called.then(|| {
+            "[image] glass_shadows = \"clear\": light passes glass without bending, which is biased"
+                .into()
+        })
+    }),
+    (Effects::FILTER, |asked| {
+        let Sampling {
+            filter, samples, ..
+        } = asked.scene.sampling;
+        if filter == Filter::default() || samples == Some(1) {
+            return None;
+        }
+        let name = filter_name(filter)?;
+        Some(format!(
+            "[image] filter = \"{name}\", filter_width = {}",
+            filter.width
+        ))
+    }),
+    (Effects::CAUSTICS, |asked| {
+        let sampling = &asked.scene.sampling;
+        let lamps = asked.scene.lights.len();
+        let has_lamp = lamps > 0 || asked.glow.is_some() || asked.sun().is_some();
+        let is_possible = sampling.max_bounces > 0 && has_lamp && asked.seeks_light();
+        if !sampling.caustics || !is_possible {
+            return None;
+        }
+        let material = asked.material(asked.mirror.or(asked.glass)?);
+        Some(format!(
+            "[image] caustics = true, and {material} throws light onto others"
+        ))
     }),
 ];
 
@@ -216,6 +260,16 @@ impl<'a> Asked<'a> {
             .count()
     }
 
+    /// Whether there is glass that lets light without extent through.
+    fn has_clear_glass(&self) -> bool {
+        self.glass.is_some() && self.scene.sampling.glass_shadows == GlassShadows::Clear
+    }
+
+    /// Whether there is a light without extent.
+    fn has_hard_light(&self) -> bool {
+        !self.scene.lights.is_empty() || self.sun().is_some_and(|sun| sun.size == 0.0)
+    }
+
     fn sun(&self) -> Option<Sun> {
         self.scene.sky.as_ref()?.sun
     }
@@ -250,6 +304,7 @@ impl Scene {
         called.extend(self.antialiasing(all(&called)));
         called.extend(self.headlamp(all(&called)));
         called.extend(self.large_spheres(all(&called)));
+        called.extend(self.clamp(all(&called)));
         called.sort_by_key(|called| called.effect.to_bits());
         called
     }
@@ -295,6 +350,31 @@ impl Scene {
             );
             of(Effects::LARGE_SPHERES, by)
         })
+    }
+
+    /// The limit on indirect light, if paths with `others` carry any.
+    fn clamp(&self, others: Effects) -> Option<Called> {
+        let limit = self.sampling.clamp?;
+        others.any(Effects::BOUNCING).then(|| {
+            let by = format!(
+                "[image] clamp = {limit}: the indirect light of a sample adds no more, which is biased"
+            );
+            of(Effects::CLAMP, by)
+        })
+    }
+
+    /// What a reader of the image should know: by what of the `shown` effects it is biased on
+    /// request. Empty if it is not.
+    pub(crate) fn remarks(&self, shown: Effects) -> String {
+        if !shown.any(BIASED) {
+            return String::new();
+        }
+        let called = self.called_effects();
+        let biased = called
+            .iter()
+            .filter(|one| one.effect.within(shown).any(BIASED));
+        let remarks: Vec<&str> = biased.map(|one| one.by.as_str()).collect();
+        remarks.join("; ")
     }
 
     /// Samples a pixel.
@@ -379,6 +459,14 @@ impl Scene {
     }
 }
 
+/// The name of a filter's kind, if there is one.
+fn filter_name(filter: Filter) -> Option<&'static str> {
+    let mut named = Filter::NAMED.iter();
+    named
+        .find(|(_, one)| one.kind == filter.kind)
+        .map(|(name, _)| *name)
+}
+
 fn of(effect: Effects, by: String) -> Called {
     let name = Effects::NAMED
         .iter()
@@ -397,7 +485,8 @@ mod tests {
         let named = Effects::NAMED.iter().map(|(effect, _)| *effect);
         let by_others = Effects::ANTIALIASING
             .and(Effects::HEADLAMP)
-            .and(Effects::LARGE_SPHERES);
+            .and(Effects::LARGE_SPHERES)
+            .and(Effects::CLAMP);
         let expected: Vec<Effects> = named.filter(|effect| !effect.any(by_others)).collect();
         assert_eq!(listed, expected);
     }

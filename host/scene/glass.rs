@@ -45,6 +45,19 @@ impl Glass {
             && self.least_distance(other) + other.radius() < self.radius()
     }
 
+    /// Whether `other` is a hollow about the centre of this sphere.
+    fn has_hollow_within(&self, other: &Self, is_absolute: bool) -> bool {
+        // Where indices are those of the glass itself, that of a hollow is one.
+        let (solid, hollow) = (&self.material, &other.material);
+        let relative = if is_absolute { 1.0 } else { solid.parameter };
+        (solid.kind, hollow.kind) == (Material::GLASS, Material::BUBBLE)
+            && (relative * hollow.parameter - 1.0).abs() < 1e-6
+            && solid.volume == hollow.volume
+            && self.velocity == other.velocity
+            && self.least_distance(other) <= 1e-6 * other.radius()
+            && other.radius() < self.radius()
+    }
+
     fn radius(&self) -> f64 {
         f64::from(self.sphere.radius().abs())
     }
@@ -127,6 +140,40 @@ impl World {
         world
     }
 
+    /// The spheres of glass that no other glass overlaps but a hollow about their centre, by index,
+    /// each with the index of its hollow. `is_absolute` says whether the refractive indices are
+    /// those of [`World::with_absolute_glass`].
+    pub(crate) fn lone_glass(&self, is_absolute: bool) -> Vec<(u32, Option<u32>)> {
+        let mut glass = self.glass();
+        let moves = glass.iter().any(|one| one.velocity != Vec3::ZERO);
+        glass.sort_by(|a, b| a.ends().0.total_cmp(&b.ends().0));
+        let mut hollows: Vec<Option<u32>> = vec![None; glass.len()];
+        let mut is_lone = vec![true; glass.len()];
+        for (at, one) in glass.iter().enumerate() {
+            let others = glass.iter().enumerate().skip(at + 1);
+            let near = others.take_while(|(_, other)| moves || other.ends().0 <= one.ends().1);
+            for (beside, other) in near.filter(|(_, other)| one.overlaps(other)) {
+                let (outer, inner) = if one.radius() > other.radius() {
+                    (at, beside)
+                } else {
+                    (beside, at)
+                };
+                let is_hollow = glass[outer].has_hollow_within(&glass[inner], is_absolute);
+                if is_hollow && hollows[outer].is_none() {
+                    hollows[outer] = Some(glass[inner].index as u32);
+                } else {
+                    is_lone[at] = false;
+                    is_lone[beside] = false;
+                }
+            }
+        }
+        let of_glass = |at: &usize| is_lone[*at] && glass[*at].material.kind == Material::GLASS;
+        (0..glass.len())
+            .filter(of_glass)
+            .map(|at| (glass[at].index as u32, hollows[at]))
+            .collect()
+    }
+
     /// Two glass spheres, by index, of which one is in the other or overlaps it, if there are such.
     /// A hollow in a sphere is not meant.
     #[must_use]
@@ -180,6 +227,32 @@ mod tests {
         assert_eq!(moving.overlapping_glass(), None);
         moving.velocities = vec![Vec3::ZERO, Vec3::X];
         assert_eq!(moving.overlapping_glass(), Some((0, 1)));
+    }
+
+    #[test]
+    fn lone_glass_is_found_with_its_hollow() {
+        let glass = Material::glass(1.5, Vec3::ONE);
+        let bubble = Material::bubble(1.5, Vec3::ONE);
+        let spheres = [
+            (0.0, 1.0, glass),
+            (0.0, 0.5, bubble),
+            (3.0, 1.0, glass),
+            (6.0, 1.0, glass),
+            (7.5, 1.0, glass),
+            (20.0, 1.0, glass),
+            (20.1, 0.5, bubble),
+            (30.0, 1.0, glass),
+            (30.0, 0.5, bubble),
+            (30.0, 0.1, glass),
+        ];
+        let lone = |world: World, is_absolute| {
+            let mut lone = world.lone_glass(is_absolute);
+            lone.sort_unstable();
+            lone
+        };
+        let expected = [(0, Some(1)), (2, None)];
+        assert_eq!(lone(world(&spheres), false), expected);
+        assert_eq!(lone(world(&spheres).with_absolute_glass(), true), expected);
     }
 
     /// A ball in air in a ball; and a ball beside them.

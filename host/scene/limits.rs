@@ -95,6 +95,10 @@ pub const LIGHT_RADIUS: Range = Range::new(0.0, MAX_LENGTH);
 pub const THICKNESS: Range = Range::above_zero(MAX_LENGTH);
 /// How near something must be to keep ambient light away.
 pub const AMBIENT_OCCLUSION: Range = Range::above_zero(MAX_LENGTH);
+/// What the indirect light of a sample adds at most.
+pub const CLAMP: Range = Range::above_zero(MAX_RADIANCE);
+/// How wide the filter is, in pixels: with a wider one an image shows nothing but its blur.
+pub const FILTER_WIDTH: Range = Range::above_zero(64.0);
 /// The diameter of the lens.
 pub const APERTURE: Range = Range::new(0.0, MAX_LENGTH);
 /// How far away what is in focus is.

@@ -7,10 +7,12 @@
 //! | [`limits`] | the ranges of a scene's numbers |
 //! | [`surroundings`] | light, sky, fog, lens: everything besides spheres |
 //! | [`mod@effects`] | which effects a scene calls for, and what calls for them |
+//! | `casters` | the spheres that throw light onto others |
 //! | `copies` | equal spheres, of which one can be seen |
 //! | `glass` | glass in glass, and glass around a point |
 //! | `validate` | checks whether a scene can be rendered |
 
+mod casters;
 mod copies;
 pub mod effects;
 mod glass;
@@ -24,7 +26,7 @@ use std::path::PathBuf;
 
 use glam::Vec3;
 
-pub use surroundings::{Develop, FogBall, Lens, PointLight, Sampling, Surroundings};
+pub use surroundings::{Develop, FogBall, GlassShadows, Lens, PointLight, Sampling, Surroundings};
 pub use view::View;
 pub use world::World;
 

@@ -4,6 +4,7 @@ use std::f32::consts::PI;
 use std::f64::consts::FRAC_PI_2;
 
 use glam::Vec3;
+use spherule_kernel::filter::Filter;
 use spherule_kernel::fog::Fog;
 
 /// A point light.
@@ -114,6 +115,16 @@ pub struct Sampling {
     /// The distance within which surfaces block ambient light, in scene units; `None` for no
     /// ambient occlusion.
     pub ambient_occlusion: Option<f32>,
+    /// What glass does to light without extent.
+    pub glass_shadows: GlassShadows,
+    /// The largest radiance, in any channel, that the indirect light of one sample adds: the light
+    /// that is scattered more often than once between its source and the camera. That is biased;
+    /// `None` for no limit.
+    pub clamp: Option<f32>,
+    /// How samples are spread around the middle of a pixel. With a single sample it is there.
+    pub filter: Filter,
+    /// Whether the light that a mirror or a ball of glass throws onto surfaces is computed exactly.
+    pub caustics: bool,
     /// The seed of the random numbers. Each seed gives another image with the same expectation.
     pub seed: u32,
 }
@@ -131,9 +142,25 @@ impl Default for Sampling {
             samples: None,
             max_bounces: Self::DEFAULT_BOUNCES,
             ambient_occlusion: None,
+            glass_shadows: GlassShadows::default(),
+            clamp: None,
+            filter: Filter::default(),
+            caustics: false,
             seed: 0,
         }
     }
+}
+
+/// What glass does to the light of points and of a sun without extent, which no path meets by
+/// chance.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum GlassShadows {
+    /// It blocks that light.
+    #[default]
+    Dark,
+    /// It lets that light through as if it did not bend, less what it absorbs and reflects. That is
+    /// biased.
+    Clear,
 }
 
 /// How light becomes the colours of an 8-bit image. Linear images are not changed.

@@ -4,11 +4,12 @@ use std::fmt::Display;
 
 use glam::Vec3;
 use rayon::prelude::*;
+use spherule_kernel::filter::Filter;
 use spherule_kernel::{Material, Sphere};
 
 use super::limits::{self, Range};
 use super::world::{GRAIN, World};
-use super::{Scene, Surroundings, View};
+use super::{GlassShadows, Scene, Surroundings, View};
 use crate::error::{Error, Result, SceneError};
 
 impl Scene {
@@ -73,6 +74,16 @@ impl Scene {
         if let Some(distance) = sampling.ambient_occlusion {
             one("ambient_occlusion", distance, limits::AMBIENT_OCCLUSION)?;
         }
+        if let Some(limit) = sampling.clamp {
+            one("clamp", limit, limits::CLAMP)?;
+        }
+        if sampling.caustics && sampling.glass_shadows == GlassShadows::Clear {
+            return Err(wrong(
+                "clear shadows of glass and caustics both let light through it",
+                "take one: [image] glass_shadows = \"clear\", or caustics = true",
+            ));
+        }
+        validate_filter(sampling.filter)?;
         one("the exposure", self.develop.exposure, limits::EXPOSURE)?;
         if let Some(view) = &self.view {
             validate_view(view)?;
@@ -97,6 +108,20 @@ impl Scene {
         }
         Ok(())
     }
+}
+
+fn validate_filter(filter: Filter) -> Result<()> {
+    one("the filter's width", filter.width, limits::FILTER_WIDTH)?;
+    if filter.kind <= Filter::BLACKMAN_HARRIS {
+        return Ok(());
+    }
+    Err(wrong(
+        format!(
+            "the filter is of the kind {}, which there is not",
+            filter.kind
+        ),
+        "take one of Filter::NAMED, or make it of Filter's constants",
+    ))
 }
 
 fn validate_sky(sky: &Surroundings) -> Result<()> {
@@ -416,6 +441,13 @@ mod tests {
             ("samples", |s| s.sampling.samples = Some(0)),
             ("max_bounces", |s| s.sampling.max_bounces = u32::MAX),
             ("ambient", |s| s.sampling.ambient_occlusion = Some(f32::NAN)),
+            ("clamp", |s| s.sampling.clamp = Some(0.0)),
+            ("both let light through", |s| {
+                s.sampling.caustics = true;
+                s.sampling.glass_shadows = GlassShadows::Clear;
+            }),
+            ("filter's width", |s| s.sampling.filter.width = 0.0),
+            ("filter is of the kind 3", |s| s.sampling.filter.kind = 3),
             ("exposure", |s| s.develop.exposure = 1e9),
             ("vertical_fov", |s| {
                 s.view = Some(View {

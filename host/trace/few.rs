@@ -135,7 +135,7 @@ impl Group {
             nearest.t = Single16::select(is_new, t, nearest.t);
             nearest.sphere = is_new.select(index, nearest.sphere);
             if ANY {
-                nearest.done = nearest.done | is_new;
+                nearest.done |= is_new;
                 if nearest.done.all_true() {
                     break;
                 }

@@ -2,7 +2,7 @@
 //! written.
 
 use exr::block::{self, UncompressedBlock, writer::ChunksWriter};
-use exr::meta::attribute::{ChannelDescription, SampleType};
+use exr::meta::attribute::{ChannelDescription, SampleType, Text};
 use exr::meta::header::{Header, LayerAttributes};
 use rayon::prelude::*;
 use spherule_kernel::Hit;
@@ -76,8 +76,13 @@ pub(super) fn write(image: &Image, sink: Sink<'_>, trouble: &Trouble) -> Result<
         .collect();
     let size = (image.width() as usize, image.height() as usize);
     // Run-length encoding, tiles of 64 × 64, in any order.
-    let header =
-        Header::new("".into(), size, descriptions).with_attributes(LayerAttributes::default());
+    let attributes = LayerAttributes {
+        comments: Some(image.remarks.as_str())
+            .filter(|remarks| !remarks.is_empty())
+            .and_then(Text::new_or_none),
+        ..LayerAttributes::default()
+    };
+    let header = Header::new("".into(), size, descriptions).with_attributes(attributes);
     let headers = std::iter::once(header).collect();
     block::write(sink, headers, true, |meta, writer| {
         let mut order = block::enumerate_ordered_header_block_indices(&meta.headers);
@@ -176,6 +181,25 @@ mod tests {
                     assert_eq!(opacity, if has_alpha { alpha[index] } else { 1.0 });
                 }
             }
+        }
+    }
+
+    /// The file says what the image's remarks are, and nothing else if there are none.
+    #[test]
+    fn remarks_are_comments() {
+        for remarks in ["", "of 5 µm"] {
+            let mut image =
+                Image::new(1, 1, Shading::Lit, vec![Pixel::default()]).expect("an image");
+            image.remarks = remarks.into();
+            let mut file = tempfile::tempfile().expect("a file");
+            let trouble = OnceCell::new();
+            assert!(write(&image, Sink::new(&mut file, &trouble), &trouble).is_ok());
+            file.rewind().expect("its start");
+            let meta = exr::meta::MetaData::read_from_buffered(BufReader::new(file), true);
+            let header = meta.expect("an EXR").headers.remove(0);
+            let comments = header.own_attributes.comments.map(|text| text.to_string());
+            let expected = Some(remarks.to_owned()).filter(|remarks| !remarks.is_empty());
+            assert_eq!(comments, expected);
         }
     }
 }

@@ -80,8 +80,9 @@ impl Image {
 /// The bytes of a file in this format that could not be compressed at all.
 fn most(format: Format, image: &Image) -> u64 {
     let has_alpha = image.has_alpha();
-    match format {
+    let pixels = match format {
         Format::Png => png::most(image.width(), image.height(), has_alpha),
         Format::Exr => exr::most(image.width(), image.height(), has_alpha),
-    }
+    };
+    pixels + image.remarks.len() as u64
 }

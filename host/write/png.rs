@@ -54,6 +54,7 @@ pub(super) fn write(image: &Image, mut sink: Sink<'_>, trouble: &Trouble) -> Res
     writer.finish()?;
     // Noise takes more room by this compression than without any.
     let most = most(image.width(), image.height(), image.has_alpha());
+    let most = most + image.remarks.len() as u64;
     if sink.stream_position()? > most {
         sink.clear();
         write_stored(image, &mut sink, trouble)?;
@@ -142,6 +143,9 @@ fn header<'a, 'b>(
     encoder.set_depth(BitDepth::Eight);
     encoder.set_deflate_compression(DeflateCompression::FdeflateUltraFast);
     encoder.set_filter(FILTER);
+    if !image.remarks.is_empty() {
+        encoder.add_itxt_chunk("Comment".into(), image.remarks.clone())?;
+    }
     Ok(encoder.write_header()?)
 }
 
@@ -249,6 +253,25 @@ mod tests {
                     assert!(file.len() as u64 <= most(width, height, has_alpha));
                 }
             }
+        }
+    }
+
+    /// The file says what the image's remarks are, and nothing else if there are none.
+    #[test]
+    fn remarks_are_a_comment() {
+        for remarks in ["", "of 5 µm"] {
+            let mut image = image(7, 3, false, false);
+            image.remarks = remarks.into();
+            let file = written(&image);
+            let decoder = png::Decoder::new(std::io::Cursor::new(&file));
+            let reader = decoder.read_info().expect("a PNG");
+            let texts = reader.info().utf8_text.iter();
+            let found: Vec<(String, String)> = texts
+                .map(|chunk| (chunk.keyword.clone(), chunk.get_text().expect("UTF-8")))
+                .collect();
+            let comment = ("Comment".to_owned(), remarks.to_owned());
+            let expected = Some(comment).filter(|_| !remarks.is_empty());
+            assert_eq!(found, Vec::from_iter(expected));
         }
     }
 

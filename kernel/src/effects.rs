@@ -70,6 +70,14 @@ effects! {
     NESTED_GLASS = 19, "nested-glass";
     /// So many lights that they are chosen by what they may give to a place.
     MANY_LIGHTS = 20, "many-lights";
+    /// Glass that lets the light of lights without extent through, unbent.
+    CLEAR_SHADOWS = 21, "clear-shadows";
+    /// A filter other than the pixel itself.
+    FILTER = 22, "filter";
+    /// A limit on the indirect light of each sample.
+    CLAMP = 23, "clamp";
+    /// Light that reaches a surface by one sphere, through glass or mirrored, found exactly.
+    CAUSTICS = 24, "caustics";
 }
 
 impl Effects {
@@ -91,6 +99,14 @@ impl Effects {
 
     /// No effect.
     pub const NONE: Self = Self(0);
+
+    /// Effects for which paths continue beyond their first vertex.
+    pub const BOUNCING: Self = Self::MIRROR
+        .and(Self::ROUGH_METAL)
+        .and(Self::PLASTIC)
+        .and(Self::GLASS)
+        .and(Self::INTERREFLECTION)
+        .and(Self::FOG);
 
     /// The set with these bits; bits that stand for no effect are dropped.
     #[inline]

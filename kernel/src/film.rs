@@ -6,6 +6,7 @@ use glam::{UVec2, UVec4, Vec3, Vec4};
 
 use crate::camera::Camera;
 use crate::color::luminance;
+use crate::filter::Filter;
 use crate::fog::Fog;
 use crate::hit::Hit;
 use crate::light::sky::Sky;
@@ -127,8 +128,12 @@ pub struct PathLaunch {
     pub has_ambient_sky: u32,
     /// 1 if light comes from a sky that is not an image, so that paths meet it only by chance.
     pub has_plain_sky: u32,
-    /// Nothing; it keeps what follows where the GPU's layout has it.
-    pub padding: u32,
+    /// 1 where each tile of the image takes as many samples as it needs, 0 where all pixels take
+    /// the same samples. Then `tile_size` is [`ADAPTIVE_TILE`] wide, the tiles stand below each
+    /// other, each accumulator knows its tile ([`Accumulator::of_tile`]) and goes on from the
+    /// samples that it has, and the samples belong to two groups in turn: see
+    /// [`Accumulator::variance_by_groups`].
+    pub is_adaptive: u32,
     /// The glass spheres that hold the eye, the smallest first, and
     /// [`Hit::NONE_SPHERE`](crate::Hit::NONE_SPHERE) after the last.
     pub glass_at_eye: UVec4,
@@ -136,7 +141,19 @@ pub struct PathLaunch {
     pub sky: Sky,
     /// The medium, if there is one.
     pub fog: Fog,
+    /// How samples are spread around the middle of a pixel.
+    pub filter: Filter,
+    /// The largest radiance, in any channel, that the indirect light of one sample adds.
+    pub indirect_limit: f32,
+    /// Where the table of the spheres that cast caustics begins, in the kernel's tables: see
+    /// [`Entry`](crate::path::caustic::casters::Entry).
+    pub first_caster: u32,
+    /// Padding for the layout on a GPU.
+    pub padding: UVec2,
 }
+
+/// Pixels along each side of a tile that takes as many samples as it needs.
+pub const ADAPTIVE_TILE: u32 = 16;
 
 /// The samples of one pixel so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
@@ -145,13 +162,40 @@ pub struct Accumulator {
     /// The sums of radiance and of alpha.
     pub(crate) color_alpha: Vec4,
     /// Of the luminance, the sum of squared differences from its mean; the number of samples; the
-    /// depth of the first; the mean luminance.
+    /// depth of the first; the mean luminance. Where samples belong to two groups, the first is
+    /// the sum of the one group's luminance less that of the other, and the last is the number of
+    /// the pixel's tile.
     pub(crate) statistics: Vec4,
 }
 
 impl Accumulator {
     /// The largest channel of a sample's radiance: of 2¹⁶ squares of it the sum is still a float.
     pub const BRIGHTEST: f32 = (1_u64 << 55) as f32;
+
+    /// No samples yet of a pixel of the tile with this number. Tiles are counted row by row from
+    /// the upper left of the image, up to 2²⁴ of them.
+    #[inline]
+    #[must_use]
+    pub fn of_tile(tile: u32) -> Self {
+        Self {
+            color_alpha: Vec4::ZERO,
+            statistics: Vec4::new(0.0, 0.0, 0.0, tile as f32),
+        }
+    }
+
+    /// The pixel of the image whose samples these are, if they stand at `slot` of a launch of
+    /// tiles: see [`PathLaunch::is_adaptive`]. Tiles at the right and lower edges have pixels that
+    /// are beyond the image.
+    #[inline]
+    #[must_use]
+    pub fn pixel_at(&self, slot: UVec2, image_size: UVec2) -> UVec2 {
+        let tile = self.statistics.w as u32;
+        let columns = (image_size.x.wrapping_add(ADAPTIVE_TILE - 1) / ADAPTIVE_TILE).max(1);
+        UVec2::new(
+            (tile % columns).wrapping_mul(ADAPTIVE_TILE) + slot.x % ADAPTIVE_TILE,
+            (tile / columns).wrapping_mul(ADAPTIVE_TILE) + slot.y % ADAPTIVE_TILE,
+        )
+    }
 
     /// Adds a sample: its radiance, its opacity, and the distance to the first sphere.
     ///
@@ -163,28 +207,42 @@ impl Accumulator {
     /// does not destroy a pixel.
     #[inline]
     pub fn add(&mut self, radiance: Vec3, alpha: f32, depth: f32) {
-        let radiance = Vec3::new(
-            bounded(radiance.x),
-            bounded(radiance.y),
-            bounded(radiance.z),
-        );
+        let radiance = bounded(radiance);
         let luminance = luminance(radiance);
-        let count = self.statistics.y;
         let away = luminance - self.statistics.w;
-        let mean = self.statistics.w + away / (count + 1.0);
+        let mean = self.statistics.w + away / (self.samples() + 1.0);
+        let squares = self.statistics.x + away * (luminance - mean);
+        self.count(radiance.extend(alpha), depth, squares, mean);
+    }
+
+    /// Adds a sample, as [`Accumulator::add`] does, where samples belong to two groups: this one to
+    /// the first if `group` is even, else to the second.
+    #[inline]
+    pub fn add_to_group(&mut self, radiance: Vec3, alpha: f32, depth: f32, group: u32) {
+        let radiance = bounded(radiance);
+        let luminance = luminance(radiance);
+        let signed = if group & 1 == 0 {
+            luminance
+        } else {
+            -luminance
+        };
+        let difference = self.statistics.x + signed;
+        self.count(radiance.extend(alpha), depth, difference, self.statistics.w);
+    }
+
+    /// Adds a sample whose radiance is bounded; `spread` and `last` are what is kept of the
+    /// luminance.
+    #[inline]
+    fn count(&mut self, color_alpha: Vec4, depth: f32, spread: f32, last: f32) {
+        let count = self.samples();
         // The depth of a pixel is that of its first sample.
         let depth = if count == 0.0 {
             depth
         } else {
             self.statistics.z
         };
-        self.color_alpha += radiance.extend(alpha);
-        self.statistics = Vec4::new(
-            self.statistics.x + away * (luminance - mean),
-            count + 1.0,
-            depth,
-            mean,
-        );
+        self.color_alpha += color_alpha;
+        self.statistics = Vec4::new(spread, count + 1.0, depth, last);
     }
 
     /// How many samples there are.
@@ -227,11 +285,47 @@ impl Accumulator {
         }
         self.statistics.x.max(0.0) / (count - 1.0) / count
     }
+
+    /// The estimated variance of the mean's luminance, where samples belong to two groups. Zero for
+    /// fewer than two samples.
+    ///
+    /// Let A and B be the sums of the groups' luminance, of n / 2 samples each. The groups are
+    /// independent and equally distributed, so that A and B have one expectation and one variance
+    /// V. The mean is (A + B) / n and has the variance 2 V / n². The expectation of (A − B)² is
+    /// 2 V, too. So (A − B)² / n² estimates the variance without bias, however much the samples of
+    /// a group depend on each other. Of one pixel it says little; it is meant to be averaged over
+    /// many.
+    ///
+    /// Where n is odd, the first group has one sample more. The mean stands in for that:
+    /// A − B less the mean is (n² − 1) / 2n times the difference of the groups' means, and the bias
+    /// is of the order of 1 / n².
+    #[inline]
+    #[must_use]
+    pub fn variance_by_groups(&self) -> f32 {
+        let count = self.samples();
+        if count < 2.0 {
+            return 0.0;
+        }
+        let is_odd = count as u32 & 1 == 1;
+        let surplus = if is_odd { luminance(self.color()) } else { 0.0 };
+        let error = (self.statistics.x - surplus) / count;
+        error * error
+    }
 }
 
-/// A channel of a sample's radiance, as it counts; there is none below zero.
+/// A sample's radiance, as it counts.
 #[inline]
-fn bounded(channel: f32) -> f32 {
+fn bounded(radiance: Vec3) -> Vec3 {
+    Vec3::new(
+        bounded_channel(radiance.x),
+        bounded_channel(radiance.y),
+        bounded_channel(radiance.z),
+    )
+}
+
+/// A channel of it; there is none below zero.
+#[inline]
+fn bounded_channel(channel: f32) -> f32 {
     if channel >= Accumulator::BRIGHTEST {
         Accumulator::BRIGHTEST
     } else if channel > 0.0 {
@@ -253,15 +347,19 @@ const _: () = {
     assert!(core::mem::offset_of!(Launch, sphere_count) == 108);
     assert!(size_of::<Pixel>() == 16);
     assert!(core::mem::offset_of!(Pixel, color_depth) == 0);
-    assert!(size_of::<PathLaunch>() == 288);
+    assert!(size_of::<PathLaunch>() == 320);
+    assert!(core::mem::offset_of!(PathLaunch, is_adaptive) == 140);
     assert!(core::mem::offset_of!(PathLaunch, sky) == 160);
     assert!(core::mem::offset_of!(PathLaunch, fog) == 240);
+    assert!(core::mem::offset_of!(PathLaunch, filter) == 288);
+    assert!(core::mem::offset_of!(PathLaunch, indirect_limit) == 304);
     assert!(size_of::<Accumulator>() == 32);
 };
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::path::random::Sampler;
 
     /// Bright light that hardly varies: what a difference of sums of squares makes of it is all
     /// rounding.
@@ -275,6 +373,63 @@ mod tests {
         let expected = 0.25 * 0.25 / 4096.0;
         let found = pixel.variance_of_mean();
         assert!((found / expected - 1.0).abs() < 0.01, "{found} {expected}");
+    }
+
+    /// The difference of the groups' sums keeps its digits, too, and says what is known of it:
+    /// here one group is 0.25 brighter.
+    #[test]
+    fn the_difference_of_bright_and_steady_groups_keeps_its_digits() {
+        let mut pixel = Accumulator::of_tile(7);
+        for sample in 0..4096 {
+            let light = 1000.0 + if sample % 2 == 0 { 0.25 } else { 0.0 };
+            pixel.add_to_group(Vec3::splat(light), 1.0, 1.0, sample);
+        }
+        let expected = (0.25 * 2048.0 / 4096.0_f32).powi(2);
+        let found = pixel.variance_by_groups();
+        assert!((found / expected - 1.0).abs() < 1e-3, "{found} {expected}");
+        // One sample more hardly changes it.
+        pixel.add_to_group(Vec3::splat(1000.25), 1.0, 1.0, 4096);
+        let odd = pixel.variance_by_groups();
+        assert!((odd / expected - 1.0).abs() < 0.01, "{odd} {expected}");
+    }
+
+    /// For two groups of independent numbers the estimate is right in the mean, for even and odd
+    /// numbers of samples.
+    #[test]
+    fn the_variance_by_groups_is_unbiased() {
+        // Miri is a thousand times slower.
+        const PIXELS: u32 = if cfg!(miri) { 50 } else { 20_000 };
+        for samples in [2, 8, 9] {
+            let mut sum = 0.0;
+            for pixel in 0..PIXELS {
+                let mut sums = Accumulator::of_tile(0);
+                for sample in 0..samples {
+                    let u = Sampler::new(sample, UVec2::new(pixel, 0), 0).single(0);
+                    sums.add_to_group(Vec3::splat(u), 1.0, 1.0, sample);
+                }
+                sum += f64::from(sums.variance_by_groups());
+            }
+            let found = sum / f64::from(PIXELS);
+            let expected = 1.0 / 12.0 / f64::from(samples);
+            // Four standard errors, of squares of normal numbers, and the bias of odd ones.
+            let tolerance = 4.0 * (2.0 / f64::from(PIXELS)).sqrt()
+                + f64::from(samples % 2) * 3.0 / f64::from(samples * samples);
+            assert!(
+                (found / expected - 1.0).abs() < tolerance,
+                "{samples}: {found} {expected}"
+            );
+        }
+    }
+
+    #[test]
+    fn pixels_find_their_place_by_their_tile() {
+        let size = UVec2::new(40, 20);
+        // Three tiles in a row; the fifth is the second of the second row.
+        let pixel = Accumulator::of_tile(4);
+        assert_eq!(pixel.pixel_at(UVec2::new(3, 18), size), UVec2::new(19, 18));
+        let last = Accumulator::of_tile((1 << 24) - 1);
+        let size = UVec2::splat(1 << 16);
+        assert_eq!(last.pixel_at(UVec2::splat(15), size), size - 1);
     }
 
     #[test]

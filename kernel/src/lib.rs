@@ -50,6 +50,7 @@ pub mod color;
 pub mod cull;
 pub mod effects;
 pub mod film;
+pub mod filter;
 pub mod fog;
 pub mod gpu;
 pub mod hit;

@@ -193,6 +193,7 @@ const OF_SCENES: &[&[u8]] = &[
     b"background = ",
     b"transparent = true\n",
     b"ambient_occlusion = ",
+    b"caustics = ",
     b"eye = ",
     b"target = ",
     b"up = ",

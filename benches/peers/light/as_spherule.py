@@ -12,6 +12,8 @@ def triple(values):
 def image_and_camera(scene, width, height):
     camera = scene.camera
     lines = ["[image]", f"width = {width}", f"height = {height}", f"max_bounces = {scene.max_bounces}"]
+    if scene.caustics:
+        lines.append("caustics = true")
     lines += ["background = [0, 0, 0]", "", "[camera]"]
     lines += [f"eye = {triple(camera.eye)}", f"target = {triple(camera.target)}"]
     lines += [f"vertical_fov = {camera.vertical_fov}"]

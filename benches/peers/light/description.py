@@ -60,6 +60,7 @@ class Scene:
     # The radiance from directions, an array of unit vectors; instead of `sky`.
     environment: Optional[Callable[[np.ndarray], np.ndarray]] = None
     fog: Optional[Fog] = None
+    caustics: bool = False  # what only spherule has: light by one sphere is found exactly
 
     def add(self, center, radius, material):
         self.spheres.append(Sphere(tuple(map(float, center)), float(radius), material))

@@ -109,14 +109,15 @@ def soft_light():
 def glass_lamp():
     scene = Scene(
         name="glass-lamp",
-        tests="a caustic: a ball of glass between a lamp and a diffuse floor",
+        tests="a caustic: a ball of glass between a small lamp and a diffuse floor",
         camera=Camera((0, 3.2, 5.2), (0, 0.35, 0), 36),
         max_bounces=12,
-        materials={"glass": Material("glass"), "lamp": Material("emissive", (20, 19, 17))},
+        materials={"glass": Material("glass"), "lamp": Material("emissive", (80, 76, 68))},
+        caustics=True,
     )
     add_ground(scene, (0.6, 0.6, 0.6))
     scene.add((0, 1.2, 0), 0.8, "glass")
-    scene.add((-1.5, 4, -0.5), 0.7, "lamp")
+    scene.add((-1.5, 4, -0.5), 0.35, "lamp")
     scene.materials["ball"] = Material("diffuse", (0.7, 0.3, 0.2))
     scene.add((1.6, height_on_ground(1.6, 0.5, 0.4), 0.5), 0.4, "ball")
     return scene

@@ -1,13 +1,14 @@
 //! The table `[image]`.
 
 use serde::Deserialize;
+use spherule_kernel::filter::Filter;
 use toml::Spanned;
 
 use super::reader::Reader;
 use super::value::Value;
 use crate::error::Result;
 use crate::scene::surroundings::Tonemap;
-use crate::scene::{Scene, limits};
+use crate::scene::{GlassShadows, Scene, limits};
 
 #[derive(Deserialize, Default)]
 #[serde(deny_unknown_fields, expecting = "a table")]
@@ -19,6 +20,11 @@ pub(super) struct ImageTable {
     pub(super) samples: Option<Spanned<Value>>,
     pub(super) max_bounces: Option<Spanned<Value>>,
     pub(super) ambient_occlusion: Option<Spanned<Value>>,
+    pub(super) glass_shadows: Option<Spanned<Value>>,
+    pub(super) clamp: Option<Spanned<Value>>,
+    pub(super) filter: Option<Spanned<Value>>,
+    pub(super) filter_width: Option<Spanned<Value>>,
+    pub(super) caustics: Option<Spanned<Value>>,
     pub(super) seed: Option<Spanned<Value>>,
     pub(super) exposure: Option<Spanned<Value>>,
     pub(super) tonemap: Option<Spanned<Value>>,
@@ -27,10 +33,10 @@ pub(super) struct ImageTable {
 impl Reader<'_> {
     pub(super) fn image(&self, table: &ImageTable, scene: &mut Scene) -> Result<()> {
         if let Some(transparent) = &table.transparent {
-            scene.transparent = match transparent.get_ref() {
-                Value::Truth(truth) => *truth,
-                _ => return Err(self.not_a("transparent", transparent, "true or false")),
-            };
+            scene.transparent = self.truth("transparent", transparent)?;
+        }
+        if let Some(caustics) = &table.caustics {
+            scene.sampling.caustics = self.truth("caustics", caustics)?;
         }
         if let Some(samples) = &table.samples {
             scene.sampling.samples =
@@ -46,6 +52,20 @@ impl Reader<'_> {
         if let Some(distance) = &table.ambient_occlusion {
             scene.sampling.ambient_occlusion =
                 Some(self.number("ambient_occlusion", distance, limits::AMBIENT_OCCLUSION)?);
+        }
+        if let Some(shadows) = &table.glass_shadows {
+            let names = [("dark", GlassShadows::Dark), ("clear", GlassShadows::Clear)];
+            scene.sampling.glass_shadows = self.one_of("glass_shadows", shadows, &names)?;
+        }
+        if let Some(clamp) = &table.clamp {
+            scene.sampling.clamp = Some(self.number("clamp", clamp, limits::CLAMP)?);
+        }
+        if let Some(filter) = &table.filter {
+            scene.sampling.filter = self.one_of("filter", filter, &Filter::NAMED)?;
+        }
+        if let Some(width) = &table.filter_width {
+            scene.sampling.filter.width =
+                self.number("filter_width", width, limits::FILTER_WIDTH)?;
         }
         if let Some(exposure) = &table.exposure {
             scene.develop.exposure = self.number("exposure", exposure, limits::EXPOSURE)?;

@@ -43,6 +43,14 @@ impl Reader<'_> {
         self.path.parent().unwrap_or(Path::new("")).join(name)
     }
 
+    /// A value that is true or false.
+    pub(super) fn truth(&self, name: &str, value: &Spanned<Value>) -> Result<bool> {
+        match value.get_ref() {
+            Value::Truth(truth) => Ok(*truth),
+            _ => Err(self.not_a(name, value, "true or false")),
+        }
+    }
+
     /// The error for a value that is not what is `wanted`.
     pub(super) fn not_a(&self, name: &str, value: &Spanned<Value>, wanted: &str) -> Error {
         let (said, value_kind) = (value.get_ref().said(), value.get_ref());

@@ -235,6 +235,14 @@ fn each_key_of_the_effects_refuses_what_it_cannot_be() {
         ("camera = 5", "this is the whole number `5`, not a table"),
         ("camera = 2020-01-01", "this is a date or time, not a table"),
         ("[image]\nsamples = 0", "samples = 0"),
+        ("[image]\nclamp = 0", "clamp = 0"),
+        ("[image]\nfilter = \"sinc\"", "there is no filter \"sinc\""),
+        ("[image]\nfilter_width = 0", "filter_width = 0"),
+        ("[image]\nfilter_width = 65", "filter_width = 65"),
+        (
+            "[image]\nglass_shadows = \"grey\"",
+            "there is no glass_shadows \"grey\"",
+        ),
         ("[image]\nsamples = 65537", "65537"),
         ("[image]\nmax_bounces = -1", "max_bounces = -1"),
         ("[image]\nambient_occlusion = 0", "ambient_occlusion = 0"),
@@ -249,6 +257,7 @@ fn each_key_of_the_effects_refuses_what_it_cannot_be() {
             "[image]\ntransparent = 1",
             "transparent is 1, not true or false",
         ),
+        ("[image]\ncaustics = 1", "caustics is 1, not true or false"),
         (
             "[image]\nsamples = \"4\"",
             "samples is the text \"4\", not a whole number",

@@ -1,6 +1,7 @@
 //! Light paths on the CPU: bands of rows on every thread.
 
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::ops::RangeInclusive;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
@@ -8,10 +9,11 @@ use spherule_kernel::path::Scenery;
 use spherule_kernel::precision::OnRung;
 use spherule_kernel::{Accumulator, Effects, PathLaunch, Rung};
 
-use super::budget::{Budget, Reached, StoppedBy, noise};
+use super::adaptive::{Adaptive, Goal, Tracer, take_samples, tiles_of};
+use super::budget::{Budget, Reached};
 use super::preview::Preview;
 use super::{Prepared, Progress, Sampled, Settings, together};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::film;
 use crate::render::Timings;
 use crate::render::launch::check_path_launch;
@@ -33,12 +35,14 @@ const LOCAL: u32 = Effects::ANTIALIASING
     .and(Effects::SKY_GRADIENT)
     .and(Effects::TRANSPARENT_BACKGROUND)
     .and(Effects::LARGE_SPHERES)
+    .and(Effects::FILTER)
     .to_bits();
-/// Effects of scenes without fog, motion and an image of the surroundings.
+/// Effects of scenes without fog, motion, an image of the surroundings and caustics.
 const STILL: u32 = Effects::ALL
     .without(Effects::FOG)
     .without(Effects::MOTION_BLUR)
     .without(Effects::ENVIRONMENT)
+    .without(Effects::CAUSTICS)
     .to_bits();
 const ALL: u32 = Effects::ALL.to_bits();
 
@@ -56,7 +60,7 @@ type Trace = fn(
 /// # Errors
 ///
 /// [`OutOfHostMemory`](crate::Error::OutOfHostMemory) if the host has no room for the image,
-/// [`Error::Scene`] if the launch is not one of a whole image.
+/// [`Scene`](crate::Error::Scene) if the launch is not one of a whole image.
 pub fn render(prepared: &Prepared, settings: &Settings, progress: Progress<'_>) -> Result<Sampled> {
     check_path_launch(&prepared.launch)?;
     let begun = Instant::now();
@@ -91,24 +95,35 @@ pub fn render(prepared: &Prepared, settings: &Settings, progress: Progress<'_>) 
     let deadline = settings
         .time_limit
         .and_then(|limit| started.checked_add(limit));
-    let mut budget = Budget::new(prepared.samples, deadline, settings.noise);
-    let stopped_by = take_samples(
-        &prepared.launch,
-        &mut budget,
-        &mut accumulators,
-        progress,
-        &pass,
-    )?;
+    let reached = match settings.noise {
+        Some(target) => {
+            let goal = Goal {
+                target,
+                samples: prepared.samples,
+                of_launch: u32::MAX,
+                deadline,
+            };
+            take_where_needed(&prepared.launch, &goal, &mut accumulators, progress, &pass)?
+        }
+        None => {
+            let mut budget = Budget::new(prepared.samples, deadline);
+            let stopped_by = budget.spend(progress, |first, count, goes_on| {
+                let launch = PathLaunch {
+                    first_sample: first,
+                    sample_count: count,
+                    ..prepared.launch
+                };
+                let begun = Instant::now();
+                let is_done = pass(&launch, &mut accumulators, goes_on);
+                Ok((is_done, begun.elapsed()))
+            })?;
+            Reached::of(&accumulators, prepared.samples, stopped_by).with_noise_of(&accumulators)
+        }
+    };
     let timings = Timings {
         setup: started - begun,
         trace: started.elapsed(),
         ..Timings::default()
-    };
-    let reached = Reached {
-        samples: budget.done(),
-        asked: prepared.samples,
-        noise: noise(&accumulators),
-        stopped_by,
     };
     Ok(Sampled {
         accumulators,
@@ -121,44 +136,43 @@ pub fn render(prepared: &Prepared, settings: &Settings, progress: Progress<'_>) 
 /// Traces a launch for as long as it is told to go on, and says whether all of it was traced.
 type Pass<'a> = &'a dyn Fn(&PathLaunch, &mut [Accumulator], &(dyn Fn(f64) -> bool + Sync)) -> bool;
 
-/// Takes samples until `budget` or `progress` ends that; says what did.
-fn take_samples(
+/// Takes samples of each tile of `image` until `goal` or `progress` ends that.
+fn take_where_needed(
     launch: &PathLaunch,
-    budget: &mut Budget,
-    accumulators: &mut [Accumulator],
+    goal: &Goal,
+    image: &mut [Accumulator],
     progress: Progress<'_>,
     pass: Pass<'_>,
-) -> Result<StoppedBy> {
-    while let Some((first, count)) = budget.next() {
-        let launch = PathLaunch {
-            first_sample: first,
-            sample_count: count,
-            ..*launch
-        };
+) -> Result<Reached> {
+    let size = launch.image_size;
+    let mut adaptive = Adaptive::new(size, 0..tiles_of(size))?;
+    let by = take_samples(&mut adaptive, launch, goal, progress, &mut Here(pass))?;
+    adaptive.put_into(image);
+    Ok(Reached::of(image, goal.samples, by).with_noise_by_groups(adaptive.noise()))
+}
+
+/// Traces where the sums are.
+struct Here<'a>(Pass<'a>);
+
+impl Tracer for Here<'_> {
+    fn pass(
+        &mut self,
+        launch: &PathLaunch,
+        sums: &mut [Accumulator],
+        goes_on: &(dyn Fn(f64) -> bool + Sync),
+    ) -> Result<(bool, Duration)> {
         let begun = Instant::now();
-        let is_interrupted = AtomicBool::new(false);
-        let goes_on = |share: f64| {
-            let goes_on = progress(budget.share(count, share)).is_continue();
-            if !goes_on {
-                is_interrupted.store(true, Ordering::Relaxed);
-            }
-            goes_on && !budget.is_late()
-        };
-        if !pass(&launch, accumulators, &goes_on) {
-            return Ok(if is_interrupted.into_inner() {
-                StoppedBy::Interrupted
-            } else {
-                StoppedBy::TimeLimit
-            });
-        }
-        let stop = budget.took(count, begun.elapsed(), || {
-            Ok::<_, Error>(noise(accumulators))
-        })?;
-        if let Some(by) = stop {
-            return Ok(by);
-        }
+        let is_done = (self.0)(launch, sums, goes_on);
+        Ok((is_done, begun.elapsed()))
     }
-    Ok(StoppedBy::Samples)
+
+    fn fetch(&mut self, _: &mut Adaptive, _: RangeInclusive<u32>) -> Result<()> {
+        Ok(())
+    }
+
+    fn give(&mut self, _: &[Accumulator]) -> Result<()> {
+        Ok(())
+    }
 }
 
 /// The loop that was compiled for the rung and for the fewest effects that hold these.
@@ -200,6 +214,7 @@ fn trace<const EFFECTS: u32, const RUNG: u32>(
         materials: &world.materials,
         lights: &prepared.lights,
         tables: &prepared.tables,
+        texels: &prepared.texels,
     };
     let width = launch.tile_size.x as usize;
     accumulators

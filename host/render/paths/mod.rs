@@ -6,10 +6,12 @@
 //! | `lights` | the lights, in a list or a tree |
 //! | [`cpu`], `together` | the kernel's functions over bands of rows, on every thread; paths in step |
 //! | [`gpu`] | the kernel's entry point over tiles and runs of samples |
-//! | [`budget`] | when enough samples are enough |
+//! | [`budget`] | how far a render came, and what ends it |
+//! | `adaptive` | samples where they are needed, for a noise target |
 //! | `rebase` | moves scenes that are far from the origin to it |
 //! | `preview` | a coarse image, for pixels that have no sample when the time is up |
 
+mod adaptive;
 pub mod budget;
 pub mod cpu;
 #[cfg(feature = "gpu")]
@@ -59,8 +61,13 @@ pub fn render(
 ) -> Result<Rendered> {
     let started = Instant::now();
     let pixels = u64::from(scene.width) * u64::from(scene.height);
-    // Sums, and opacities beside them.
-    memory_for(scene, (size_of::<Accumulator>() + size_of::<f32>()) as u64)?;
+    // Sums, tile by tile before they are an image where there is a noise target, and opacities
+    // beside them.
+    let sums = 1 + usize::from(settings.noise.is_some());
+    memory_for(
+        scene,
+        (sums * size_of::<Accumulator>() + size_of::<f32>()) as u64,
+    )?;
     let prepared = Prepared::new(scene, settings.effects, settings.acceleration)?;
     let setup = started.elapsed();
     // Reserved first, so that no work is lost if memory runs out.
@@ -117,6 +124,7 @@ pub fn render(
         image.set_alpha(alpha)?;
     }
     image.develop = scene.develop;
+    image.remarks = scene.remarks(prepared.shown);
     Ok(Rendered {
         image,
         traced,

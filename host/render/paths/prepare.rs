@@ -8,6 +8,7 @@ use glam::{DVec3, UVec4, Vec3, Vec4};
 use spherule_kernel::color::luminance;
 use spherule_kernel::fog::Fog;
 use spherule_kernel::material::microfacet::{ALBEDO_LEN, Albedo};
+use spherule_kernel::path::caustic::casters::Entry;
 use spherule_kernel::{Effects, Hit, Light, PathLaunch};
 
 use super::lights::lights;
@@ -32,8 +33,10 @@ pub struct Prepared {
     pub velocities: Vec<Vec4>,
     /// The lights that are looked for.
     pub lights: Vec<Light>,
-    /// The tables of rough metal and of the environment.
+    /// The tables of rough metal, of the environment, and of what casts caustics.
     pub tables: Vec<f32>,
+    /// The channels of the environment, three a texel.
+    pub texels: Vec<f32>,
     /// The effects that the image shows.
     pub shown: Effects,
     /// The effects that the pipeline is compiled for.
@@ -80,6 +83,8 @@ impl Prepared {
             None => (world.into_owned(), Nodes::default()),
         };
         let (lights, sky, sphere_light_probability) = lights(scene, &world, shutter, shown);
+        let (mut tables, texels) = tables(scene, shown);
+        let first_caster = add_casters(&world, shown, &mut tables);
         let launch = PathLaunch {
             camera: whole.camera,
             image_size: whole.image_size,
@@ -97,14 +102,13 @@ impl Prepared {
             sphere_light_probability,
             called_effects: shown.to_bits(),
             has_ambient_sky: scene.sky.is_some().into(),
+            first_caster,
             has_plain_sky: u32::from(has_plain_sky(scene)),
-            glass_at_eye: {
-                let mut around = world.glass_around(view.eye);
-                around.resize(4, Hit::NONE_SPHERE);
-                UVec4::from_slice(&around)
-            },
+            indirect_limit: scene.sampling.clamp.unwrap_or(0.0),
+            glass_at_eye: glass_at_eye(&world, view.eye),
             sky,
             fog: fog(scene, view.eye),
+            filter: scene.sampling.filter,
             ..PathLaunch::default()
         };
         let velocities = if shown.any(Effects::MOTION_BLUR) {
@@ -119,7 +123,8 @@ impl Prepared {
             launch,
             velocities,
             lights,
-            tables: tables(scene, shown),
+            tables,
+            texels,
             shown,
             compiled: choice.compiled(called),
             samples: if shown.any(Effects::ANTIALIASING) {
@@ -129,6 +134,23 @@ impl Prepared {
             },
         })
     }
+}
+
+/// The glass spheres that hold the eye, as [`PathLaunch::glass_at_eye`] has them.
+fn glass_at_eye(world: &World, eye: Vec3) -> UVec4 {
+    let mut around = world.glass_around(eye);
+    around.resize(4, Hit::NONE_SPHERE);
+    UVec4::from_slice(&around)
+}
+
+/// Appends the table of the spheres that cast caustics, and returns where it begins.
+fn add_casters(world: &World, shown: Effects, tables: &mut Vec<f32>) -> u32 {
+    let first = tables.len() as u32;
+    if shown.any(Effects::CAUSTICS) {
+        let casters = world.casters(shown.any(Effects::NESTED_GLASS));
+        tables.extend(Entry::table(&casters));
+    }
+    first
 }
 
 /// Whether light comes from a sky that is not an image.
@@ -160,8 +182,9 @@ fn fog(scene: &Scene, eye: Vec3) -> Fog {
     medium
 }
 
-fn tables(scene: &Scene, shown: Effects) -> Vec<f32> {
-    let mut tables = Vec::new();
+/// The tables, and the texels of the environment.
+fn tables(scene: &Scene, shown: Effects) -> (Vec<f32>, Vec<f32>) {
+    let (mut tables, mut texels) = (Vec::new(), Vec::new());
     if shown.any(Effects::ROUGH_METAL.and(Effects::PLASTIC)) {
         // It takes a fifth of a second.
         static ALBEDO: LazyLock<[f32; ALBEDO_LEN]> = LazyLock::new(Albedo::table);
@@ -172,11 +195,12 @@ fn tables(scene: &Scene, shown: Effects) -> Vec<f32> {
     {
         tables.resize(ALBEDO_LEN, 1.0);
         environment(image, &mut tables);
+        texels = bytemuck::cast_slice(&image.texels).to_vec();
     }
-    tables
+    (tables, texels)
 }
 
-/// The cumulative probabilities of rows and of texels in rows, and the texels.
+/// The cumulative probabilities of rows and of texels in rows.
 ///
 /// A texel counts by its solid angle and by the mean luminance of what is shown in it, which is
 /// linear between the middles of texels: ¾ of the texel's own and ⅛ of each neighbour's, along both
@@ -213,5 +237,4 @@ fn environment(image: &EnvironmentImage, tables: &mut Vec<f32>) {
     }
     tables.extend(rows.iter().map(|sum| (sum / total) as f32));
     tables.extend(columns);
-    tables.extend(image.texels.iter().flat_map(|texel| texel.to_array()));
 }

@@ -10,7 +10,7 @@ use std::cell::Cell;
 use glam::UVec2;
 use spherule_kernel::accel::traversal::Traversal;
 use spherule_kernel::path::random::Sampler;
-use spherule_kernel::path::{Path, Scenery, Shadow, shade, start};
+use spherule_kernel::path::{Path, Samples, Scenery, Shadow, shade, start};
 use spherule_kernel::{Accumulator, Effects, Hit, Ray};
 
 use crate::trace::single::Single;
@@ -18,11 +18,32 @@ use crate::trace::single::Single;
 /// A path under way.
 struct UnderWay {
     /// The index of its pixel among those that are traced.
-    pixel: usize,
+    slot: usize,
+    /// Its pixel of the image.
+    pixel: UVec2,
     sample: u32,
+    /// The sample after the pixel's last.
+    end: u32,
     sampler: Sampler,
     path: Path,
     goes_on: bool,
+}
+
+impl UnderWay {
+    /// Starts the path of a sample.
+    #[inline(always)]
+    fn of(scenery: &Scenery<'_, Single<'_>>, slot: usize, samples: Samples) -> Self {
+        let sampler = Sampler::of(scenery.launch, samples.pixel, samples.first);
+        Self {
+            slot,
+            pixel: samples.pixel,
+            sample: samples.first,
+            end: samples.end,
+            sampler,
+            path: start(scenery, samples.pixel, &sampler),
+            goes_on: true,
+        }
+    }
 }
 
 /// Adds the samples of a launch to pixels of a tile that is so wide, from the one with index
@@ -34,24 +55,14 @@ pub(super) fn trace_pixels(
     first: usize,
     pixels: &mut [Accumulator],
 ) {
-    let launch = scenery.launch;
-    let begin = |pixel: usize, sample: u32| {
-        let index = first + pixel;
+    let mut paths: Vec<UnderWay> = Vec::with_capacity(pixels.len());
+    for (slot, sums) in pixels.iter().enumerate() {
+        let index = first + slot;
         let at = UVec2::new((index % width) as u32, (index / width) as u32);
-        let at = launch.tile_origin.wrapping_add(at);
-        let sampler = Sampler::new(launch.seed, at, sample);
-        UnderWay {
-            pixel,
-            sample,
-            sampler,
-            path: start(scenery, at, &sampler),
-            goes_on: true,
+        let samples = Samples::of(scenery.launch, at, sums);
+        if samples.first < samples.end {
+            paths.push(UnderWay::of(scenery, slot, samples));
         }
-    };
-    let end = launch.first_sample.wrapping_add(launch.sample_count);
-    let mut paths: Vec<UnderWay> = Vec::new();
-    if launch.first_sample < end {
-        paths.extend((0..pixels.len()).map(|pixel| begin(pixel, launch.first_sample)));
     }
     let mut rays = Rays::default();
     while !paths.is_empty() {
@@ -77,10 +88,14 @@ pub(super) fn trace_pixels(
                 index += 1;
                 continue;
             }
-            of.path.end(&mut pixels[of.pixel]);
-            let next = of.sample + 1;
-            if next < end {
-                *of = begin(of.pixel, next);
+            of.path.end(scenery, of.sample, &mut pixels[of.slot]);
+            let samples = Samples {
+                pixel: of.pixel,
+                first: of.sample + 1,
+                end: of.end,
+            };
+            if samples.first < samples.end {
+                *of = UnderWay::of(scenery, of.slot, samples);
                 index += 1;
             } else {
                 paths.swap_remove(index);
@@ -134,7 +149,7 @@ impl Rays {
                 let path = &mut paths[*index].path;
                 let spheres = scenery.spheres_at(path.time(), shadow.left);
                 if !scenery.traversal.is_occluded(&shadow.ray, &spheres) {
-                    path.receive(shadow.light);
+                    path.receive(scenery.effects, shadow.light, shadow.scatterings);
                 }
             }
             return;
@@ -155,7 +170,8 @@ impl Rays {
             .trace::<true>(rays, lefts, scenery.spheres, put);
         for ((index, shadow), hit) in shadows.iter().zip(&self.hits) {
             if !hit.is_some() {
-                paths[*index].path.receive(shadow.light);
+                let path = &mut paths[*index].path;
+                path.receive(scenery.effects, shadow.light, shadow.scatterings);
             }
         }
     }

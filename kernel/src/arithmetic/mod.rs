@@ -2,12 +2,14 @@
 //!
 //! | module | holds |
 //! | --- | --- |
+//! | [`arctangent`] | angles, to a few units in the last place on every device |
 //! | [`strict`] | sum, difference and product that no compiler rearranges |
 //! | [`error_free`] | the exact error of a sum, a difference, a product |
 //! | [`distill`] | the accurate sum of many floats, whatever cancels |
 //! | [`double_single`] | numbers as sums of two floats, about 48 bits |
 //! | [`elements`] | elements of arrays and slices, read and written without a panic |
 
+pub mod arctangent;
 pub mod distill;
 pub mod double_single;
 pub mod elements;

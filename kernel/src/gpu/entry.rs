@@ -123,8 +123,9 @@ pub fn trace_paths(
     #[spirv(storage_buffer, descriptor_set = 0, binding = 4)] materials: &[Material],
     #[spirv(storage_buffer, descriptor_set = 0, binding = 5)] lights: &[Light],
     #[spirv(storage_buffer, descriptor_set = 0, binding = 6)] tables: &[f32],
-    #[spirv(storage_buffer, descriptor_set = 0, binding = 7)] nodes: &[Node],
-    #[spirv(storage_buffer, descriptor_set = 0, binding = 8)] accumulators: &mut [Accumulator],
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 7)] texels: &[f32],
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 8)] nodes: &[Node],
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 9)] accumulators: &mut [Accumulator],
 ) {
     let pixel = UVec2::new(id.x, id.y);
     if pixel.x < launch.tile_size.x && pixel.y < launch.tile_size.y {
@@ -151,6 +152,7 @@ pub fn trace_paths(
                 materials,
                 lights,
                 tables,
+                texels,
             };
             accumulators[index] = trace_pixel(&scenery, pixel, accumulators[index]);
         }

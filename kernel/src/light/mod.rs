@@ -18,7 +18,7 @@ use crate::arithmetic::elements::read;
 use crate::path::sampling::{cone, cone_density, uniform_sphere};
 use crate::sphere::Sphere;
 
-/// A light that is sampled. One is chosen at a time, by its probability. In a [tree](tree) of
+/// A light that is sampled. One is chosen at a time, by its probability. In a [tree] of
 /// lights some fields mean something else.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
@@ -39,7 +39,7 @@ pub struct Light {
     /// One minus the cosine of the angle between the sun's middle and its edge; zero for a sun
     /// without extent.
     pub height: f32,
-    /// In a [tree](tree) of lights, the entry of another light.
+    /// In a [tree] of lights, the entry of another light.
     pub leaf: u32,
 }
 
@@ -52,7 +52,7 @@ impl Light {
     pub const SUN: u32 = 2;
     /// The image of the surroundings.
     pub const ENVIRONMENT: u32 = 3;
-    /// Several lights of a [tree](tree).
+    /// Several lights of a [tree].
     pub const NODE: u32 = 4;
 
     /// A point of light of this radiant intensity, per steradian.
@@ -145,6 +145,18 @@ pub fn sphere_density(sphere: Sphere, point: Vec3) -> f32 {
     } else {
         0.25 * FRAC_1_PI
     }
+}
+
+/// 1 − cos of the angle between the middle and the edge of the cap of a lamp from which any light
+/// reaches a ball. Not above zero if there is
+/// none. Where a lamp's normal is n, light reaches what is above its tangent plane, and a ball of
+/// radius r has points there if (C − L) · n + r > ρ.
+#[inline]
+#[must_use]
+pub fn cap_height(lamp: Sphere, ball: Sphere) -> f32 {
+    let apart = (ball.center() - lamp.center()).length();
+    let edge = (lamp.radius().abs() - ball.radius().abs()) / apart.max(f32::MIN_POSITIVE);
+    1.0 - edge.max(-1.0)
 }
 
 /// 1 − cos of the angle between the middle and the edge of a sphere seen from the distance whose

@@ -17,9 +17,10 @@ use crate::material::microfacet::ALBEDO_LEN;
 ///
 /// An image is an equirectangular map of `environment_size` texels: its columns go once around,
 /// with −z in the middle and +x right of it, its rows from the zenith to the nadir. Radiance is
-/// linear between the middles of texels. The image lies in the kernel's tables, after
-/// [`ALBEDO_LEN`] floats: the cumulative probability of each row, that of each texel in its row,
-/// and the texels' three channels.
+/// linear between the middles of texels. In the kernel's tables lie, after [`ALBEDO_LEN`] floats,
+/// the cumulative probability of each row, and that of each texel in its row; the texels' three
+/// channels are in a buffer of their own, because no device binds as much as an image of 16,384 ×
+/// 8,192 takes with all of these.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Sky {
@@ -47,12 +48,13 @@ pub struct Sky {
 }
 
 impl Sky {
-    /// The radiance from `direction`, a unit vector, without the sun.
+    /// The radiance from `direction`, a unit vector, without the sun; `texels` are the image's
+    /// channels.
     #[inline]
     #[must_use]
-    pub fn radiance(&self, effects: Effects, direction: Vec3, tables: &[f32]) -> Vec3 {
+    pub fn radiance(&self, effects: Effects, direction: Vec3, texels: &[f32]) -> Vec3 {
         if effects.any(Effects::ENVIRONMENT) {
-            self.interpolated(direction, tables)
+            self.interpolated(direction, texels)
         } else if effects.any(Effects::SKY_GRADIENT) {
             self.horizon + (self.zenith - self.horizon) * direction.y.clamp(0.0, 1.0)
         } else {
@@ -88,7 +90,7 @@ impl Sky {
 
     /// The radiance that the image shows in a direction: linear between the middles of texels,
     /// around without an end, and constant above the first row's middle and below the last's.
-    fn interpolated(&self, direction: Vec3, tables: &[f32]) -> Vec3 {
+    fn interpolated(&self, direction: Vec3, texels: &[f32]) -> Vec3 {
         let (size, place) = (self.environment_size, self.place_of(direction));
         let (width, height) = (size.x.max(1), size.y.max(1));
         let x = (place.x * width as f32 - 0.5).max(-0.5);
@@ -103,7 +105,7 @@ impl Sky {
         let after = if before + 1 < width { before + 1 } else { 0 };
         let above = (top as u32).min(height - 1);
         let below = (above + 1).min(height - 1);
-        let texel = |x: u32, y: u32| self.texel(UVec2::new(x, y), tables);
+        let texel = |x: u32, y: u32| self.texel(UVec2::new(x, y), texels);
         let upper = texel(before, above) * (1.0 - across) + texel(after, above) * across;
         let lower = texel(before, below) * (1.0 - across) + texel(after, below) * across;
         upper * (1.0 - down) + lower * down
@@ -119,8 +121,8 @@ impl Sky {
         ALBEDO_LEN + self.environment_size.y as usize
     }
 
-    /// The index of a row's first column; for the number of rows, the index behind them. Here and
-    /// below, impossible sizes wrap, and nothing beyond the tables is read.
+    /// The index of a row's first column. Here and below, impossible sizes wrap, and nothing beyond
+    /// the tables is read.
     #[inline]
     fn columns_of(&self, row: u32) -> usize {
         let before = (row as usize).wrapping_mul(self.environment_size.x as usize);
@@ -128,13 +130,11 @@ impl Sky {
     }
 
     #[inline]
-    fn texel(&self, texel: UVec2, tables: &[f32]) -> Vec3 {
-        let size = self.environment_size;
-        let row = (texel.y as usize).wrapping_mul(size.x as usize);
-        let channel = row.wrapping_add(texel.x as usize).wrapping_mul(3);
-        let at = self.columns_of(size.y).wrapping_add(channel);
-        if tables.len() > 2 && at < tables.len() - 2 {
-            Vec3::new(tables[at], tables[at + 1], tables[at + 2])
+    fn texel(&self, texel: UVec2, texels: &[f32]) -> Vec3 {
+        let row = (texel.y as usize).wrapping_mul(self.environment_size.x as usize);
+        let at = row.wrapping_add(texel.x as usize).wrapping_mul(3);
+        if texels.len() > 2 && at < texels.len() - 2 {
+            Vec3::new(texels[at], texels[at + 1], texels[at + 2])
         } else {
             Vec3::ZERO
         }
@@ -163,7 +163,7 @@ impl Sky {
     /// A direction, the brighter the likelier, with its density and its radiance.
     #[inline]
     #[must_use]
-    pub fn sample_environment(&self, u: Vec2, tables: &[f32]) -> (Vec3, f32, Vec3) {
+    pub fn sample_environment(&self, u: Vec2, tables: &[f32], texels: &[f32]) -> (Vec3, f32, Vec3) {
         let size = self.environment_size;
         let (row, v) = find(tables, self.row_table(), size.y, u.y);
         let (column, h) = find(tables, self.columns_of(row), size.x, u.x);
@@ -182,7 +182,7 @@ impl Sky {
         (
             direction,
             self.density_in(texel, tables),
-            self.interpolated(direction, tables),
+            self.interpolated(direction, texels),
         )
     }
 }

@@ -2,6 +2,7 @@
 
 use glam::Vec3;
 
+use super::caustic::weight::{weight_at_lamp, weight_at_sun};
 use super::light_path::Path;
 use super::place::Place;
 use super::sampling::power_heuristic;
@@ -25,16 +26,20 @@ pub(super) fn arrive_at_sky<T: Traversal>(scenery: &Scenery<'_, T>, path: &mut P
             sky.environment_probability * sky.environment_density(path.direction, scenery.tables);
         weight = power_heuristic(path.density, other);
     }
-    let mut light = sky.radiance(effects, path.direction, scenery.tables) * weight;
+    let mut light = sky.radiance(effects, path.direction, scenery.texels) * weight;
     if effects.any(Effects::SUN) && sky.is_sun(path.direction) {
         let mut weight = 1.0;
         if effects.any(Effects::SOFT_SHADOWS) && path.density > 0.0 {
             let other = sky.sun_probability / light::solid_angle(sky.sun_height);
             weight = power_heuristic(path.density, other);
         }
+        if effects.any(Effects::CAUSTICS) {
+            weight *= weight_at_sun(scenery, path);
+        }
         light += sky.sun_radiance * weight;
     }
-    path.radiance += path.throughput * light * path.outside_of_glass(scenery);
+    let light = path.throughput * light * path.outside_of_glass(scenery);
+    path.receive(effects, light, path.bounces());
 }
 
 /// Adds the light of the emissive sphere that a path meets at `place`.
@@ -47,17 +52,22 @@ pub(super) fn arrive_at_lamp<T: Traversal>(
 ) {
     let effects = scenery.effects;
     let mut weight = 1.0;
+    let sphere = scenery.sphere(place.sphere as usize, path.time);
+    let power = luminance(radiance) * sphere.radius() * sphere.radius();
+    let by_power = power * scenery.launch.sphere_light_probability;
     if effects.any(Effects::SOFT_SHADOWS) && path.density > 0.0 {
-        let sphere = scenery.sphere(place.sphere as usize, path.time);
         let chosen = if effects.any(Effects::MANY_LIGHTS) {
             let (point, facing) = (path.origin, path.facing);
             tree::probability_of(scenery.lights, place.sphere, point, facing)
         } else {
-            let power = luminance(radiance) * sphere.radius() * sphere.radius();
-            power * scenery.launch.sphere_light_probability
+            by_power
         };
         let other = chosen * light::sphere_density(sphere, path.origin);
         weight = power_heuristic(path.density, other);
     }
-    path.radiance += path.throughput * radiance * (weight * path.outside_of_glass(scenery));
+    if effects.any(Effects::CAUSTICS) {
+        weight *= weight_at_lamp(scenery, path, sphere, &place.surface, by_power);
+    }
+    let light = path.throughput * radiance * (weight * path.outside_of_glass(scenery));
+    path.receive(effects, light, path.bounces());
 }

@@ -5,8 +5,9 @@ use glam::Vec3;
 #[cfg(target_arch = "spirv")]
 use spirv_std::num_traits::Float as _;
 
+use super::caustic::chain::Chain;
 use super::light_path::Path;
-use super::media::Media;
+use super::media::{Media, Medium};
 use super::place::Place;
 use super::scenery::Scenery;
 use crate::accel::traversal::Traversal;
@@ -26,20 +27,39 @@ pub(super) fn passes_covered_glass(path: &mut Path, place: &Place, beyond: Media
     passes
 }
 
-/// Reflects or refracts a path at glass, by chance: the probabilities are those of Fresnel's
-/// equations. `media` is what is beyond the surface, where glass is nested.
+/// A boundary of glass that a path has met.
+pub(super) struct Boundary {
+    pub(super) incidence: Incidence,
+    /// What is beyond it, if no glass is nested.
+    medium: Medium,
+    /// What is beyond it, if glass may be nested.
+    media: Media,
+    is_in_glass: u32,
+    /// Whether it is met from outside of the sphere.
+    enters: bool,
+}
+
+impl Boundary {
+    /// Takes a path to the other side.
+    #[inline]
+    pub(super) fn cross(&self, path: &mut Path) {
+        path.medium = self.medium;
+        path.media = self.media;
+        path.is_in_glass = self.is_in_glass;
+    }
+}
+
+/// The boundary at a place on glass. `media` is what is beyond it, where glass is nested.
 #[inline]
-pub(super) fn cross_glass<T: Traversal>(
+pub(super) fn boundary<T: Traversal>(
     scenery: &Scenery<'_, T>,
-    path: &mut Path,
+    path: &Path,
     place: &Place,
     media: Media,
-    u: f32,
-) {
-    let surface = &place.surface;
-    let cosine = surface.normal.dot(path.direction);
+) -> Boundary {
+    let cosine = place.surface.normal.dot(path.direction);
     let enters = cosine < 0.0;
-    let mut beyond = path.medium;
+    let mut medium = path.medium;
     let eta;
     if scenery.effects.any(Effects::NESTED_GLASS) {
         eta = path.media.medium(scenery).index / media.medium(scenery).index;
@@ -52,31 +72,57 @@ pub(super) fn cross_glass<T: Traversal>(
         };
         // Glass is inside of a sphere of glass and outside of a hollow.
         let is_glass = enters == (material.kind == Material::GLASS);
-        beyond.index = path.medium.index / eta;
-        beyond.absorption = if is_glass {
+        medium.index = path.medium.index / eta;
+        medium.absorption = if is_glass {
             material.volume
         } else {
             Vec3::ZERO
         };
     }
-    let incidence = Incidence {
-        cosine: cosine.abs().min(1.0),
-        eta,
-    };
-    let normal = if enters {
-        surface.normal
+    // Of spheres that are not nested, only the outside of one of glass is outside of glass.
+    let is_in_glass = enters | (place.material.kind != Material::GLASS);
+    Boundary {
+        incidence: Incidence {
+            cosine: cosine.abs().min(1.0),
+            eta,
+        },
+        medium,
+        media,
+        is_in_glass: u32::from(is_in_glass),
+        enters,
+    }
+}
+
+/// Reflects or refracts a path at glass, by chance: the probabilities are those of Fresnel's
+/// equations. `media` is what is beyond the surface, where glass is nested.
+#[inline]
+pub(super) fn cross_glass<T: Traversal>(
+    scenery: &Scenery<'_, T>,
+    path: &mut Path,
+    place: &Place,
+    media: Media,
+    u: f32,
+) {
+    let boundary = boundary(scenery, path, place, media);
+    let normal = if boundary.enters {
+        place.surface.normal
     } else {
-        -surface.normal
+        -place.surface.normal
     };
+    let incidence = boundary.incidence;
     let fresnel = incidence.fresnel();
+    let is_outside = !path.is_in_glass(scenery.effects);
     let direction = if u < fresnel.reflectance {
+        if scenery.effects.any(Effects::CAUSTICS) {
+            path.chain = Chain::LOST;
+        }
         reflect(path.direction, normal)
     } else {
-        path.medium = beyond;
-        path.media = media;
-        // Of spheres that are not nested, only the outside of one of glass is outside of glass.
-        let is_in_glass = enters | (place.material.kind != Material::GLASS);
-        path.is_in_glass = u32::from(is_in_glass);
+        if scenery.effects.any(Effects::CAUSTICS) {
+            let share = 1.0 - fresnel.reflectance;
+            path.chain.refract(place.sphere, is_outside, share);
+        }
+        boundary.cross(path);
         fresnel.refract(incidence, path.direction, normal)
     };
     path.leave(place, unit(direction), 0.0);

@@ -2,6 +2,7 @@
 
 use glam::Vec3;
 
+use super::caustic::chain::Chain;
 use super::media::{Media, Medium};
 use super::place::Place;
 use super::scenery::Scenery;
@@ -25,6 +26,8 @@ pub struct Path {
     pub(super) throughput: Vec3,
     /// The light that has arrived so far.
     pub(super) radiance: Vec3,
+    /// The light that counts up to a limit only, if there is one.
+    pub(super) indirect: Vec3,
     /// What the path is in, if no glass is nested.
     pub(super) medium: Medium,
     /// The glass that the path is in, if glass may be nested.
@@ -35,6 +38,8 @@ pub struct Path {
     pub(super) density: f32,
     /// If there are many lights, the normal where one was sampled last, on the side of the path.
     pub(super) facing: Vec3,
+    /// What the path has met since, if the scene calls for caustics.
+    pub(super) chain: Chain,
     pub(super) time: f32,
     /// The number of bounces, and 2¹⁶ times that of surfaces of glass that the path has passed
     /// because smaller spheres cover them.
@@ -55,6 +60,31 @@ impl Path {
         self.events & 0xffff
     }
 
+    /// Adds light that was scattered so many times between its source and the camera. From the
+    /// second scattering on it is indirect: it is what `max_bounces = 0` leaves out.
+    #[inline]
+    pub fn receive(&mut self, effects: Effects, light: Vec3, scatterings: u32) {
+        if effects.any(Effects::CLAMP) && scatterings > 1 {
+            self.indirect += light;
+        } else {
+            self.radiance += light;
+        }
+    }
+
+    /// All the light of the sample. Indirect light that is limited keeps its hue.
+    #[inline]
+    pub(super) fn light<T: Traversal>(&self, scenery: &Scenery<'_, T>) -> Vec3 {
+        if !scenery.effects.any(Effects::CLAMP) {
+            return self.radiance;
+        }
+        let (limit, brightest) = (scenery.launch.indirect_limit, self.indirect.max_element());
+        if brightest > limit {
+            self.radiance + self.indirect * (limit / brightest)
+        } else {
+            self.radiance + self.indirect
+        }
+    }
+
     /// Passes a surface of glass as if nothing were there, and returns whether the path may: it has
     /// an end also among degenerate spheres.
     #[inline]
@@ -62,6 +92,7 @@ impl Path {
         let may_pass = self.events < MOST_PASSES << 16;
         if may_pass {
             self.leave(place, self.direction, 0.0);
+            self.chain = Chain::LOST;
             self.events += (1 << 16) - 1;
         }
         may_pass
@@ -94,7 +125,13 @@ impl Path {
     #[inline]
     #[must_use]
     pub fn ray(&self) -> Ray {
-        Ray::within(self.origin, self.direction, f32::MIN_POSITIVE, Hit::NONE_T)
+        self.ray_up_to(Hit::NONE_T)
+    }
+
+    /// The same up to a distance.
+    #[inline]
+    pub(super) fn ray_up_to(&self, t_max: f32) -> Ray {
+        Ray::within(self.origin, self.direction, f32::MIN_POSITIVE, t_max)
     }
 
     /// The index of the sphere over which that ray passes, because it leaves it; otherwise
@@ -113,7 +150,7 @@ impl Path {
     }
 
     /// The hit, or the one where the path meets again the sphere that it leaves, if that is nearer:
-    /// see [`Place::exit`].
+    /// see `Place::exit`.
     #[inline]
     #[must_use]
     pub fn or_exit(&self, hit: Hit) -> Hit {
@@ -143,27 +180,36 @@ impl Path {
         }
     }
 
-    /// Whether fog, where there is some, is around the path. Glass holds none.
+    /// Whether the path is in glass, or in a hollow in it.
     #[inline]
-    pub(super) fn is_in_fog(&self, effects: Effects) -> bool {
-        let is_in_glass = if effects.any(Effects::NESTED_GLASS) {
+    pub(super) fn is_in_glass(&self, effects: Effects) -> bool {
+        if effects.any(Effects::NESTED_GLASS) {
             !self.media.is_none()
         } else {
             effects.any(Effects::GLASS) && self.is_in_glass == 1
-        };
-        effects.any(Effects::FOG) && !is_in_glass
+        }
     }
 
-    /// Adds light that arrives at the path's vertex from a lamp.
+    /// Whether fog, where there is some, is around the path. Glass holds none.
     #[inline]
-    pub fn receive(&mut self, light: Vec3) {
-        self.radiance += light;
+    pub(super) fn is_in_fog(&self, effects: Effects) -> bool {
+        effects.any(Effects::FOG) && !self.is_in_glass(effects)
     }
 
-    /// Counts the path as a sample of its pixel.
+    /// Counts the path as this sample of its pixel.
     #[inline]
-    pub fn end(&self, pixel: &mut Accumulator) {
-        pixel.add(self.radiance, self.alpha, self.depth);
+    pub fn end<T: Traversal>(
+        &self,
+        scenery: &Scenery<'_, T>,
+        sample: u32,
+        pixel: &mut Accumulator,
+    ) {
+        let light = self.light(scenery);
+        if scenery.launch.is_adaptive == 1 {
+            pixel.add_to_group(light, self.alpha, self.depth, sample);
+        } else {
+            pixel.add(light, self.alpha, self.depth);
+        }
     }
 
     /// Sends the path off in `direction`, a unit vector that was sampled with this density.

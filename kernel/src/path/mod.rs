@@ -4,10 +4,11 @@
 //! A path starts at the camera and is continued, vertex after vertex, by a random direction (J. T.
 //! Kajiya, The rendering equation, SIGGRAPH 1986). At each vertex that is not a mirror, one light
 //! is sampled as well, and the two ways of finding a light are weighted by the power heuristic. The
-//! estimate is unbiased, except for three things that a scene asks for: the limit on bounces,
-//! ambient occlusion, and the headlamp. Lights without extent are never met by chance: they do not
-//! shine through glass, and no mirror shows them. From the fourth bounce on, dark paths end by
-//! Russian roulette, which has no bias.
+//! estimate is unbiased, except for what a scene asks for: the limit on bounces, ambient occlusion,
+//! the headlamp, clear shadows, and the clamp. Lights without extent are never met by chance: they
+//! do not shine through glass unless shadows are clear, and no mirror shows them; only [`caustic`]
+//! finds the light that one sphere throws from them onto others. From the fourth bounce on, dark
+//! paths end by Russian roulette, which has no bias.
 //!
 //! | module | holds |
 //! | --- | --- |
@@ -15,11 +16,15 @@
 //! | [`trace_pixel`] | traces the paths of a pixel, vertex after vertex: [`start`], then [`shade`] |
 //! | `vertex` | how a vertex scatters |
 //! | `seek`, `shadow`, `arrive` | lights that are sampled, and the rays to them; lights that are met by chance |
+//! | `clear` | sampled light that passes glass without bending |
+//! | [`caustic`] | light that comes by one sphere, found exactly |
 //! | `glass`, `media` | reflection, refraction and absorption; the glass that a path is in |
 //! | `light_path`, `place` | the state of a path, and where it is scattered |
 //! | [`random`], [`sampling`] | random numbers, and random directions made of them |
 
 mod arrive;
+pub mod caustic;
+mod clear;
 mod glass;
 mod light_path;
 mod media;
@@ -35,4 +40,4 @@ mod vertex;
 pub use light_path::Path;
 pub use scenery::Scenery;
 pub use shadow::Shadow;
-pub use step::{shade, start, trace_pixel};
+pub use step::{Samples, shade, start, trace_pixel};

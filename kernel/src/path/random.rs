@@ -6,9 +6,13 @@
 //! Samples of a pixel form an Owen-scrambled Sobol sequence in each pair of dimensions, shuffled
 //! anew for each pair (B. Burley, Practical Hash-based Owen Scrambling, J. Comput. Graph. Tech. 9
 //! (2020), with N. Vegdahl's constants for the hash of S. Laine and T. Karras). Their error falls
-//! faster than that of independent numbers, and each is uniform by itself.
+//! faster than that of independent numbers, and each is uniform by itself. How large it is cannot
+//! be told from one sequence; where that is asked for, samples take turns between two that are
+//! scrambled apart.
 
 use glam::{UVec2, Vec2};
+
+use crate::film::PathLaunch;
 
 /// The random numbers of one sample of one pixel.
 #[derive(Clone, Copy, Debug)]
@@ -20,6 +24,10 @@ pub struct Sampler {
 /// The dimensions of random numbers that the camera takes, and that each vertex takes.
 const OF_CAMERA: u32 = 3;
 const OF_VERTEX: u32 = 8;
+
+/// What changes the seed for the second of two groups: a number that no one takes for the
+/// difference of two seeds.
+const SECOND_GROUP: u32 = 0x6a09_e667;
 
 /// The random numbers of one vertex of a path. It holds a copy of the
 /// sampler, because SPIR-V has no structs of pointers.
@@ -65,6 +73,20 @@ impl VertexNumbers {
         self.sampler.single(self.first.wrapping_add(4))
     }
 
+    /// For a point of a lamp whose light comes by a sphere.
+    #[inline]
+    #[must_use]
+    pub fn on_lamp(&self) -> Vec2 {
+        self.sampler.pair(self.first.wrapping_add(5))
+    }
+
+    /// For the choice of that sphere.
+    #[inline]
+    #[must_use]
+    pub fn which_sphere(&self) -> f32 {
+        self.sampler.single(self.first.wrapping_add(7))
+    }
+
     /// For Russian roulette.
     #[inline]
     #[must_use]
@@ -92,6 +114,26 @@ impl Sampler {
             seed: hash(seed ^ hash(pixel.x ^ hash(pixel.y))),
             sample,
         }
+    }
+
+    /// The numbers of this sample of this pixel. If `has_groups` is 1, samples take turns between
+    /// two groups, each a sequence of its own: scrambled by another seed, so that the groups are
+    /// independent and equally distributed. If it is 0, they are one sequence, as in
+    /// [`Sampler::new`].
+    #[inline]
+    #[must_use]
+    pub fn in_groups(seed: u32, has_groups: u32, pixel: UVec2, sample: u32) -> Self {
+        let has_groups = has_groups & 1;
+        let group = sample & has_groups;
+        let seed = seed ^ group.wrapping_mul(SECOND_GROUP);
+        Self::new(seed, pixel, sample >> has_groups)
+    }
+
+    /// The numbers of this sample of this pixel in a launch.
+    #[inline]
+    #[must_use]
+    pub fn of(launch: &PathLaunch, pixel: UVec2, sample: u32) -> Self {
+        Self::in_groups(launch.seed, launch.is_adaptive, pixel, sample)
     }
 
     /// Two numbers from 0 up to, but not including, 1, for this pair of dimensions.
@@ -194,9 +236,24 @@ mod tests {
         }
     }
 
-    /// Between pixels and between dimensions there is no correlation to speak of.
+    /// Each of two groups is stratified in itself: 256 of its points have one in each of 256 cells.
     #[test]
-    fn pixels_and_dimensions_are_independent() {
+    fn each_group_is_a_net() {
+        for group in [0, 1] {
+            let mut seen = [false; 256];
+            for sample in 0..256 {
+                let sampler = Sampler::in_groups(3, 1, UVec2::new(17, 5), 2 * sample + group);
+                let point = sampler.pair(4);
+                let cell = (point.x * 16.0) as usize * 16 + (point.y * 16.0) as usize;
+                assert!(!seen[cell], "group {group}: two in a cell");
+                seen[cell] = true;
+            }
+        }
+    }
+
+    /// Between pixels, dimensions and groups there is no correlation to speak of.
+    #[test]
+    fn pixels_dimensions_and_groups_are_independent() {
         const COUNT: u32 = 65_536;
         let correlation = |f: &dyn Fn(u32) -> (f32, f32)| {
             let sum: f64 = (0..COUNT)
@@ -209,11 +266,17 @@ mod tests {
         };
         let at =
             |x, y, sample, dimension| Sampler::new(1, UVec2::new(x, y), sample).single(dimension);
-        let pairs: [&dyn Fn(u32) -> (f32, f32); 4] = [
+        let in_groups = |x, sample| {
+            let sampler = Sampler::in_groups(1, 1, UVec2::new(x, 0), sample);
+            sampler.single(0)
+        };
+        let pairs: [&dyn Fn(u32) -> (f32, f32); 5] = [
             &|i| (at(i, 0, 0, 0), at(i + 1, 0, 0, 0)),
             &|i| (at(i, 0, 0, 0), at(i, 1, 0, 0)),
             &|i| (at(i, 0, 0, 0), at(i, 0, 0, 1)),
             &|i| (at(i, 0, 3, 0), at(i, 0, 4, 2)),
+            // The same sample of each group.
+            &|i| (in_groups(i, 6), in_groups(i, 7)),
         ];
         for pair in pairs {
             // Five standard deviations of independent numbers.

@@ -8,8 +8,10 @@ use crate::effects::Effects;
 use crate::film::PathLaunch;
 use crate::hit::Hit;
 use crate::light::Light;
-use crate::material::Material;
+use crate::material::{Material, material_of};
+use crate::ray::Ray;
 use crate::sphere::Sphere;
+use crate::surface::Surface;
 
 /// The constants of a launch of light paths: how the pipeline was compiled, the parameters of the
 /// launch, and the world.
@@ -36,6 +38,8 @@ pub struct Scenery<'a, T> {
     /// The table of [`Shares`](crate::material::microfacet::Shares), followed by that of
     /// [`Sky`](crate::light::sky::Sky).
     pub tables: &'a [f32],
+    /// The channels of the image of the surroundings, three a texel.
+    pub texels: &'a [f32],
 }
 
 impl<T: Traversal> Scenery<'_, T> {
@@ -63,5 +67,29 @@ impl<T: Traversal> Scenery<'_, T> {
     pub(super) fn most_bounces(&self) -> u32 {
         // As many as a path counts.
         self.launch.max_bounces.min(0xfffe)
+    }
+
+    /// The surface of a sphere where a ray has the parameter `t`.
+    #[inline]
+    pub(super) fn surface(&self, ray: &Ray, t: f32, sphere: Sphere) -> Surface {
+        let surface = Surface::at(ray, t, sphere);
+        if self.effects.any(Effects::LARGE_SPHERES) {
+            surface.refined(ray, t, sphere)
+        } else {
+            surface
+        }
+    }
+
+    /// The material of the sphere with this index.
+    #[inline]
+    pub(super) fn material(&self, index: usize) -> Material {
+        material_of(index, self.material_ids, self.materials)
+    }
+
+    /// Whether anything but the sphere with the index `left` is in the way of a ray.
+    #[inline]
+    pub(super) fn is_blocked(&self, ray: &Ray, left: u32, time: f32) -> bool {
+        let spheres = self.spheres_at(time, left);
+        self.traversal.is_occluded(ray, &spheres)
     }
 }

@@ -6,6 +6,7 @@ use glam::{Vec2, Vec3};
 #[cfg(target_arch = "spirv")]
 use spirv_std::num_traits::Float as _;
 
+use super::clear::through_glass;
 use super::glass::absorb;
 use super::light_path::Path;
 use super::place::Place;
@@ -34,7 +35,7 @@ pub(super) fn ambient_light<T: Traversal>(
     let light = if launch.has_ambient_sky == 1 {
         launch
             .sky
-            .radiance(scenery.effects, direction, scenery.tables)
+            .radiance(scenery.effects, direction, scenery.texels)
     } else {
         Vec3::ONE
     };
@@ -95,6 +96,10 @@ pub(super) fn light_from_seeking<T: Traversal>(
         weight = power_heuristic(found.density, density);
     }
     weight *= path.outside_of_glass(scenery);
+    if scenery.effects.any(Effects::CLEAR_SHADOWS) & found.is_delta {
+        let share = through_glass(scenery, path, place, direction, distance);
+        return Shadow::certain(path.throughput * (light * share * (weight / found.density)));
+    }
     if path.is_in_fog(scenery.effects) {
         let fog = &scenery.launch.fog;
         weight *= fog.transmittance(place.surface.point, direction, distance);
@@ -151,7 +156,8 @@ fn seek<T: Traversal>(
         found.density *= cone_density(lamp.height);
         found.is_delta = false;
     } else if effects.any(Effects::ENVIRONMENT) && lamp.kind == Light::ENVIRONMENT {
-        let (direction, density, radiance) = launch.sky.sample_environment(u, scenery.tables);
+        let (tables, texels) = (scenery.tables, scenery.texels);
+        let (direction, density, radiance) = launch.sky.sample_environment(u, tables, texels);
         found.direction = direction;
         found.radiance = radiance;
         found.density *= density;

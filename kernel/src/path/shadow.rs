@@ -15,6 +15,9 @@ pub struct Shadow {
     pub left: u32,
     /// The light; zero if there is none, and nothing to ask.
     pub light: Vec3,
+    /// How many times it was scattered, the vertex included: see
+    /// [`Path::receive`](super::Path::receive).
+    pub scatterings: u32,
 }
 
 impl Shadow {
@@ -28,6 +31,7 @@ impl Shadow {
         },
         left: Hit::NONE_SPHERE,
         light: Vec3::ZERO,
+        scatterings: 1,
     };
 
     /// Light from `direction` that starts `distance` away from the place. A ray that goes into the
@@ -41,6 +45,25 @@ impl Shadow {
             ray: Ray::within(place.surface.point, direction, f32::MIN_POSITIVE, distance),
             left: place.sphere,
             light,
+            scatterings: 1,
+        }
+    }
+
+    /// Light that nothing is in the way of: its ray is empty.
+    #[inline]
+    pub(super) fn certain(light: Vec3) -> Self {
+        Self {
+            light,
+            ..Self::NONE
+        }
+    }
+
+    /// The same, scattered so many times.
+    #[inline]
+    pub(super) fn scattered(self, scatterings: u32) -> Self {
+        Self {
+            scatterings,
+            ..self
         }
     }
 

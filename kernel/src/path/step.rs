@@ -8,6 +8,8 @@ use core::f32::consts::PI;
 use glam::{UVec2, Vec2, Vec3};
 
 use super::arrive::{arrive_at_lamp, arrive_at_sky};
+use super::caustic::chain::Chain;
+use super::caustic::connect::light_by_sphere;
 use super::glass::{absorb, cross_glass, passes_covered_glass};
 use super::light_path::{Path, survives};
 use super::media::{Media, Medium};
@@ -20,21 +22,14 @@ use super::shadow::Shadow;
 use super::vertex::{LAMBERT, METAL, PHASE, PLASTIC, Vertex};
 use crate::accel::traversal::Traversal;
 use crate::effects::Effects;
-use crate::film::Accumulator;
+use crate::film::{Accumulator, PathLaunch};
 use crate::hit::Hit;
+use crate::material::Material;
 use crate::material::microfacet::{SMOOTHEST, schlick};
 use crate::material::optics::reflect;
-use crate::material::{Material, material_of};
 use crate::ray::Ray;
-use crate::surface::{Surface, unit};
+use crate::surface::unit;
 
-/// Effects for which paths continue beyond their first vertex.
-const BOUNCING: Effects = Effects::MIRROR
-    .and(Effects::ROUGH_METAL)
-    .and(Effects::PLASTIC)
-    .and(Effects::GLASS)
-    .and(Effects::INTERREFLECTION)
-    .and(Effects::FOG);
 /// Effects for which lights are sampled.
 const SEEKING: Effects = Effects::HARD_SHADOWS
     .and(Effects::SOFT_SHADOWS)
@@ -49,25 +44,54 @@ pub fn trace_pixel<T: Traversal>(
     pixel: UVec2,
     previous: Accumulator,
 ) -> Accumulator {
-    let launch = scenery.launch;
-    let pixel = launch.tile_origin.wrapping_add(pixel);
     let mut accumulator = previous;
-    let mut sample = launch.first_sample;
-    let end = sample.wrapping_add(launch.sample_count);
-    let mut sampler = Sampler::new(launch.seed, pixel, sample);
+    let Samples { pixel, first, end } = Samples::of(scenery.launch, pixel, &accumulator);
+    let mut sample = first;
+    let mut sampler = Sampler::of(scenery.launch, pixel, sample);
     let mut path = start(scenery, pixel, &sampler);
     while sample < end {
         let spheres = scenery.spheres_at(path.time, path.left);
         let hit = scenery.traversal.nearest_hit(&path.ray(), &spheres);
         let hit = path.or_exit(hit);
         if !shade(scenery, &mut path, &sampler, hit, receive_at_once) {
-            path.end(&mut accumulator);
+            path.end(scenery, sample, &mut accumulator);
             sample += 1;
-            sampler = Sampler::new(launch.seed, pixel, sample);
+            sampler = Sampler::of(scenery.launch, pixel, sample);
             path = start(scenery, pixel, &sampler);
         }
     }
     accumulator
+}
+
+/// The samples that a launch takes of one pixel.
+#[derive(Clone, Copy, Debug)]
+pub struct Samples {
+    /// The pixel of the image.
+    pub pixel: UVec2,
+    /// The first sample.
+    pub first: u32,
+    /// The sample after the last.
+    pub end: u32,
+}
+
+impl Samples {
+    /// Those of the pixel at `slot`, counted from the upper left of the tile, which has these sums.
+    #[inline]
+    #[must_use]
+    pub fn of(launch: &PathLaunch, slot: UVec2, sums: &Accumulator) -> Self {
+        let mut pixel = launch.tile_origin.wrapping_add(slot);
+        let mut first = launch.first_sample;
+        let mut count = launch.sample_count;
+        if launch.is_adaptive == 1 {
+            pixel = sums.pixel_at(pixel, launch.image_size);
+            first = sums.samples() as u32;
+            if pixel.x >= launch.image_size.x || pixel.y >= launch.image_size.y {
+                count = 0;
+            }
+        }
+        let end = first.wrapping_add(count);
+        Self { pixel, first, end }
+    }
 }
 
 /// Starts the path of a sample at the camera.
@@ -79,7 +103,10 @@ pub fn start<T: Traversal>(scenery: &Scenery<'_, T>, pixel: UVec2, sampler: &Sam
     let size = launch.image_size;
     let (mut origin, mut direction);
     if effects.any(Effects::ANTIALIASING) {
-        let inside = sampler.pair(0);
+        let mut inside = sampler.pair(0);
+        if effects.any(Effects::FILTER) {
+            inside = launch.filter.place(inside);
+        }
         let x = 2.0 * (pixel.x as f32 + inside.x) / size.x as f32 - 1.0;
         let y = 1.0 - 2.0 * (pixel.y as f32 + inside.y) / size.y as f32;
         let ray = camera.ray(Vec2::new(x, y));
@@ -106,6 +133,7 @@ pub fn start<T: Traversal>(scenery: &Scenery<'_, T>, pixel: UVec2, sampler: &Sam
         exit: Hit::NONE_T,
         throughput: Vec3::ONE,
         radiance: Vec3::ZERO,
+        indirect: Vec3::ZERO,
         medium: Medium {
             index: 1.0,
             absorption: Vec3::ZERO,
@@ -114,6 +142,7 @@ pub fn start<T: Traversal>(scenery: &Scenery<'_, T>, pixel: UVec2, sampler: &Sam
         is_in_glass: 0,
         density: 0.0,
         facing: Vec3::ZERO,
+        chain: Chain::LOST,
         time,
         events: 0,
         alpha: 1.0,
@@ -137,7 +166,7 @@ const PASSES: u32 = u32::MAX - 2;
 fn receive_at_once<T: Traversal>(scenery: &Scenery<'_, T>, path: &mut Path, shadow: Shadow) {
     let spheres = scenery.spheres_at(path.time, shadow.left);
     if shadow.is_some() && !scenery.traversal.is_occluded(&shadow.ray, &spheres) {
-        path.receive(shadow.light);
+        path.receive(scenery.effects, shadow.light, shadow.scatterings);
     }
 }
 
@@ -157,7 +186,7 @@ pub fn shade<T: Traversal>(
     let effects = scenery.effects;
     let numbers = sampler.at_vertex(path.bounces());
     let ray = path.ray();
-    let continues = effects.any(BOUNCING) & (path.bounces() <= scenery.most_bounces());
+    let continues = effects.any(Effects::BOUNCING) & (path.bounces() <= scenery.most_bounces());
 
     let mut place = Place::none();
     let is_in_fog =
@@ -224,11 +253,8 @@ fn meet_surface<T: Traversal>(
     }
     let index = hit.sphere as usize;
     let sphere = scenery.sphere(index, path.time);
-    let mut surface = Surface::at(ray, hit.t, sphere);
-    if effects.any(Effects::LARGE_SPHERES) {
-        surface = surface.refined(ray, hit.t, sphere);
-    }
-    let material = material_of(index, scenery.material_ids, scenery.materials);
+    let surface = scenery.surface(ray, hit.t, sphere);
+    let material = scenery.material(index);
     place.surface = surface;
     place.material = material;
     place.radius = sphere.radius();
@@ -267,6 +293,9 @@ fn meet_surface<T: Traversal>(
                 path.throughput *= schlick(material.color, -facing.dot(path.direction));
                 let direction = unit(reflect(path.direction, facing));
                 path.leave(place, direction, 0.0);
+                if effects.any(Effects::CAUSTICS) {
+                    path.chain.mirror(place.sphere);
+                }
                 return LEAVES;
             }
             return ENDS;
@@ -296,9 +325,12 @@ fn scatter<T: Traversal>(
         surface, material, ..
     } = place;
     let facing = surface.facing(path.direction);
+    // Of light that is found here, this one included.
+    let scatterings = path.bounces() + 1;
     if effects.any(Effects::HEADLAMP) && lobe == LAMBERT {
         // Lambert with the lamp at the eye.
-        path.radiance += path.throughput * material.color * facing.dot(path.direction).abs();
+        let light = path.throughput * material.color * facing.dot(path.direction).abs();
+        path.receive(effects, light, scatterings);
         return false;
     }
     let continues = continues & ((lobe != LAMBERT) | effects.any(Effects::INTERREFLECTION));
@@ -311,18 +343,25 @@ fn scatter<T: Traversal>(
     if effects.any(Effects::HEADLAMP) && effects.any(Effects::PLASTIC) && lobe == PLASTIC {
         // The lamp has the same power as for Lambert. The coat also reflects the background.
         let (value, _) = vertex.evaluate(scenery, -path.direction);
-        path.radiance += path.throughput * value * PI;
+        path.receive(effects, path.throughput * value * PI, scatterings);
     }
     let seeks = effects.any(SEEKING) && !scenery.lights.is_empty();
     if seeks {
         let light = light_from_seeking(scenery, path, place, &vertex, continues, numbers);
-        receive(scenery, path, light);
+        receive(scenery, path, light.scattered(scatterings));
+    }
+    let is_connected =
+        effects.any(Effects::CAUSTICS) && seeks & continues && !path.is_in_glass(effects);
+    if is_connected {
+        let light = light_by_sphere(scenery, path, place, &vertex, numbers);
+        // Two surfaces of glass, or a mirror, scatter it before the vertex does.
+        path.receive(effects, path.throughput * light, scatterings + 1);
     }
     if effects.any(Effects::AMBIENT_OCCLUSION) && lobe == LAMBERT {
         let direction = cosine_hemisphere(facing, numbers.direction());
         let weight = path.throughput * material.color;
         let light = ambient_light(scenery, place, direction, weight);
-        receive(scenery, path, light);
+        receive(scenery, path, light.scattered(scatterings));
         return false;
     }
     if !continues {
@@ -339,6 +378,13 @@ fn scatter<T: Traversal>(
     path.leave(place, direction, if seeks { density } else { 0.0 });
     if effects.any(Effects::MANY_LIGHTS) {
         path.facing = facing;
+    }
+    if effects.any(Effects::CAUSTICS) {
+        path.chain = if is_connected {
+            Chain::fresh(surface.point, density)
+        } else {
+            Chain::LOST
+        };
     }
     true
 }

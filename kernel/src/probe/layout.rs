@@ -2,6 +2,7 @@
 //! the GPU and on the CPU, so that the two can be compared.
 
 use crate::accel::node::Node;
+use crate::filter::Filter;
 use crate::fog::Fog;
 use crate::light::sky::Sky;
 use crate::material::optics::{Fresnel, Incidence};
@@ -89,6 +90,9 @@ layouts! {
     "Fog.albedo" = offset_of!(Fog, albedo);
     "Fog.extinction" = offset_of!(Fog, extinction);
     "Fog.anisotropy" = offset_of!(Fog, anisotropy);
+    "size of Filter" = size_of::<Filter>();
+    "Filter.kind" = offset_of!(Filter, kind);
+    "Filter.width" = offset_of!(Filter, width);
     "size of PathLaunch" = size_of::<PathLaunch>();
     "PathLaunch.camera" = offset_of!(PathLaunch, camera);
     "PathLaunch.image_size" = offset_of!(PathLaunch, image_size);
@@ -107,10 +111,13 @@ layouts! {
     "PathLaunch.called_effects" = offset_of!(PathLaunch, called_effects);
     "PathLaunch.has_ambient_sky" = offset_of!(PathLaunch, has_ambient_sky);
     "PathLaunch.has_plain_sky" = offset_of!(PathLaunch, has_plain_sky);
-    "PathLaunch.padding" = offset_of!(PathLaunch, padding);
+    "PathLaunch.is_adaptive" = offset_of!(PathLaunch, is_adaptive);
+    "PathLaunch.indirect_limit" = offset_of!(PathLaunch, indirect_limit);
+    "PathLaunch.first_caster" = offset_of!(PathLaunch, first_caster);
     "PathLaunch.glass_at_eye" = offset_of!(PathLaunch, glass_at_eye);
     "PathLaunch.sky" = offset_of!(PathLaunch, sky);
     "PathLaunch.fog" = offset_of!(PathLaunch, fog);
+    "PathLaunch.filter" = offset_of!(PathLaunch, filter);
     "size of Accumulator" = size_of::<Accumulator>();
     "Accumulator.color_alpha" = offset_of!(Accumulator, color_alpha);
     "Accumulator.statistics" = offset_of!(Accumulator, statistics);

@@ -739,6 +739,18 @@ pub const CALLS: &[Call] = &[
     Call::new("spherule::film::Image::width", |s| {
         seen(spherule::film::Image::width(&s.draw()))
     }),
+    Call::new("spherule::film::agreement::Agreement::is_within", |s| {
+        seen(spherule::film::agreement::Agreement::is_within(&s.draw()))
+    }),
+    Call::new("spherule::film::agreement::Agreement::of", |s| {
+        seen(spherule::film::agreement::Agreement::of(
+            &s.draw(),
+            &s.draw(),
+        ))
+    }),
+    Call::new("spherule::film::agreement::Channel::name", |s| {
+        seen(spherule::film::agreement::Channel::name(s.draw()))
+    }),
     Call::new("spherule::film::allocate", |s| {
         seen(spherule::film::allocate::<f32>(s.side(), s.side()))
     }),
@@ -754,6 +766,9 @@ pub const CALLS: &[Call] = &[
     }),
     Call::new("spherule::film::compare::Tolerance as Default", |_| {
         seen(<spherule::film::compare::Tolerance as Default>::default())
+    }),
+    Call::new("spherule::film::compare::Tolerance::of_paths", |s| {
+        seen(spherule::film::compare::Tolerance::of_paths(s.draw()))
     }),
     Call::new("spherule::film::encode::from_srgb", |s| {
         seen(spherule::film::encode::from_srgb(s.draw()))
@@ -1443,6 +1458,12 @@ pub const CALLS: &[Call] = &[
             &s.draw::<odd::OddMovingSpheres>().get(),
         ))
     }),
+    Call::new("spherule_kernel::arithmetic::arctangent::arctangent", |s| {
+        seen(spherule_kernel::arithmetic::arctangent::arctangent(
+            s.draw(),
+            s.draw(),
+        ))
+    }),
     Call::new("spherule_kernel::arithmetic::distill::distill#0", |s| {
         seen(spherule_kernel::arithmetic::distill::distill(
             &mut s.draw::<[f32; 1]>(),
@@ -1801,6 +1822,15 @@ pub const CALLS: &[Call] = &[
             s.draw(),
         ))
     }),
+    Call::new("spherule_kernel::film::Accumulator::add_to_group", |s| {
+        seen(spherule_kernel::film::Accumulator::add_to_group(
+            &mut s.draw(),
+            s.draw(),
+            s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
     Call::new("spherule_kernel::film::Accumulator::alpha", |s| {
         seen(spherule_kernel::film::Accumulator::alpha(&s.draw()))
     }),
@@ -1810,9 +1840,27 @@ pub const CALLS: &[Call] = &[
     Call::new("spherule_kernel::film::Accumulator::depth", |s| {
         seen(spherule_kernel::film::Accumulator::depth(&s.draw()))
     }),
+    Call::new("spherule_kernel::film::Accumulator::of_tile", |s| {
+        seen(spherule_kernel::film::Accumulator::of_tile(s.draw()))
+    }),
+    Call::new("spherule_kernel::film::Accumulator::pixel_at", |s| {
+        seen(spherule_kernel::film::Accumulator::pixel_at(
+            &s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
     Call::new("spherule_kernel::film::Accumulator::samples", |s| {
         seen(spherule_kernel::film::Accumulator::samples(&s.draw()))
     }),
+    Call::new(
+        "spherule_kernel::film::Accumulator::variance_by_groups",
+        |s| {
+            seen(spherule_kernel::film::Accumulator::variance_by_groups(
+                &s.draw(),
+            ))
+        },
+    ),
     Call::new(
         "spherule_kernel::film::Accumulator::variance_of_mean",
         |s| {
@@ -1863,6 +1911,15 @@ pub const CALLS: &[Call] = &[
     }),
     Call::new("spherule_kernel::film::Pixel::new", |s| {
         seen(spherule_kernel::film::Pixel::new(s.draw(), s.draw()))
+    }),
+    Call::new("spherule_kernel::filter::Filter as Default", |_| {
+        seen(<spherule_kernel::filter::Filter as Default>::default())
+    }),
+    Call::new("spherule_kernel::filter::Filter::new", |s| {
+        seen(spherule_kernel::filter::Filter::new(s.draw(), s.draw()))
+    }),
+    Call::new("spherule_kernel::filter::Filter::place", |s| {
+        seen(spherule_kernel::filter::Filter::place(&s.draw(), s.draw()))
     }),
     Call::new("spherule_kernel::fog::Fog::phase", |s| {
         seen(spherule_kernel::fog::Fog::phase(&s.draw(), s.draw()))
@@ -1979,6 +2036,9 @@ pub const CALLS: &[Call] = &[
             s.draw(),
         ))
     }),
+    Call::new("spherule_kernel::light::cap_height", |s| {
+        seen(spherule_kernel::light::cap_height(s.draw(), s.draw()))
+    }),
     Call::new("spherule_kernel::light::sample_sphere", |s| {
         seen(spherule_kernel::light::sample_sphere(
             s.draw(),
@@ -2017,6 +2077,7 @@ pub const CALLS: &[Call] = &[
                 &s.draw(),
                 s.draw(),
                 &s.many()[..],
+                &s.many()[..],
             ))
         },
     ),
@@ -2025,6 +2086,22 @@ pub const CALLS: &[Call] = &[
     }),
     Call::new("spherule_kernel::light::sphere_density", |s| {
         seen(spherule_kernel::light::sphere_density(s.draw(), s.draw()))
+    }),
+    Call::new("spherule_kernel::light::tree::choose", |s| {
+        seen(spherule_kernel::light::tree::choose(
+            &s.many()[..],
+            s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::light::tree::probability_of", |s| {
+        seen(spherule_kernel::light::tree::probability_of(
+            &s.many()[..],
+            s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
     }),
     Call::new("spherule_kernel::material::Material::bubble", |s| {
         seen(spherule_kernel::material::Material::bubble(
@@ -2203,15 +2280,163 @@ pub const CALLS: &[Call] = &[
             s.draw(),
         ))
     }),
+    Call::new("spherule_kernel::path::caustic::ball::Ball::fold", |s| {
+        seen(spherule_kernel::path::caustic::ball::Ball::fold(
+            &s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::path::caustic::ball::Ball::new", |s| {
+        seen(spherule_kernel::path::caustic::ball::Ball::new(
+            s.draw(),
+            s.draw(),
+            s.draw(),
+            s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::path::caustic::ball::Ball::root", |s| {
+        seen(spherule_kernel::path::caustic::ball::Ball::root(
+            &s.draw(),
+            s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::path::caustic::ball::Ball::spread", |s| {
+        seen(spherule_kernel::path::caustic::ball::Ball::spread(
+            &s.draw(),
+            s.draw(),
+            s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::path::caustic::ball::Ball::turn", |s| {
+        seen(spherule_kernel::path::caustic::ball::Ball::turn(
+            &s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new(
+        "spherule_kernel::path::caustic::casters::Entry::choose",
+        |s| {
+            seen(spherule_kernel::path::caustic::casters::Entry::choose(
+                &s.many()[..],
+                s.draw(),
+                s.draw(),
+            ))
+        },
+    ),
+    Call::new(
+        "spherule_kernel::path::caustic::casters::Entry::find",
+        |s| {
+            seen(spherule_kernel::path::caustic::casters::Entry::find(
+                &s.many()[..],
+                s.draw(),
+                s.draw(),
+            ))
+        },
+    ),
+    Call::new(
+        "spherule_kernel::path::caustic::casters::Entry::is_hollow",
+        |s| {
+            seen(spherule_kernel::path::caustic::casters::Entry::is_hollow(
+                s.draw(),
+            ))
+        },
+    ),
+    Call::new("spherule_kernel::path::caustic::casters::Entry::new", |s| {
+        seen(spherule_kernel::path::caustic::casters::Entry::new(
+            s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new(
+        "spherule_kernel::path::caustic::casters::Entry::table",
+        |s| {
+            seen(spherule_kernel::path::caustic::casters::Entry::table(
+                &s.many()[..],
+            ))
+        },
+    ),
+    Call::new("spherule_kernel::path::caustic::ways::Caster::ball", |s| {
+        seen(spherule_kernel::path::caustic::ways::Caster::ball(
+            &s.draw(),
+            s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::path::caustic::ways::Ways::new", |s| {
+        seen(spherule_kernel::path::caustic::ways::Ways::new(
+            s.draw(),
+            s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::path::caustic::ways::Ways::way", |s| {
+        seen(spherule_kernel::path::caustic::ways::Ways::way(
+            &mut s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::path::light_path::Path::end", |s| {
+        seen(spherule_kernel::path::Path::end(
+            &s.draw(),
+            &s.draw::<odd::OddScenery>().get(),
+            s.draw(),
+            &mut s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::path::light_path::Path::left", |s| {
+        seen(spherule_kernel::path::Path::left(&s.draw()))
+    }),
+    Call::new("spherule_kernel::path::light_path::Path::or_exit", |s| {
+        seen(spherule_kernel::path::Path::or_exit(&s.draw(), s.draw()))
+    }),
+    Call::new("spherule_kernel::path::light_path::Path::ray", |s| {
+        seen(spherule_kernel::path::Path::ray(&s.draw()))
+    }),
+    Call::new("spherule_kernel::path::light_path::Path::receive", |s| {
+        seen(spherule_kernel::path::Path::receive(
+            &mut s.draw(),
+            s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::path::light_path::Path::time", |s| {
+        seen(spherule_kernel::path::Path::time(&s.draw()))
+    }),
     Call::new("spherule_kernel::path::random::Sampler::at_vertex", |s| {
         seen(spherule_kernel::path::random::Sampler::at_vertex(
             &s.draw(),
             s.draw(),
         ))
     }),
+    Call::new("spherule_kernel::path::random::Sampler::in_groups", |s| {
+        seen(spherule_kernel::path::random::Sampler::in_groups(
+            s.draw(),
+            s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
     Call::new("spherule_kernel::path::random::Sampler::new", |s| {
         seen(spherule_kernel::path::random::Sampler::new(
             s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::path::random::Sampler::of", |s| {
+        seen(spherule_kernel::path::random::Sampler::of(
+            &s.draw(),
             s.draw(),
             s.draw(),
         ))
@@ -2245,6 +2470,14 @@ pub const CALLS: &[Call] = &[
         },
     ),
     Call::new(
+        "spherule_kernel::path::random::VertexNumbers::on_lamp",
+        |s| {
+            seen(spherule_kernel::path::random::VertexNumbers::on_lamp(
+                &s.draw(),
+            ))
+        },
+    ),
+    Call::new(
         "spherule_kernel::path::random::VertexNumbers::roulette",
         |s| {
             seen(spherule_kernel::path::random::VertexNumbers::roulette(
@@ -2267,6 +2500,14 @@ pub const CALLS: &[Call] = &[
         "spherule_kernel::path::random::VertexNumbers::which_light",
         |s| {
             seen(spherule_kernel::path::random::VertexNumbers::which_light(
+                &s.draw(),
+            ))
+        },
+    ),
+    Call::new(
+        "spherule_kernel::path::random::VertexNumbers::which_sphere",
+        |s| {
+            seen(spherule_kernel::path::random::VertexNumbers::which_sphere(
                 &s.draw(),
             ))
         },
@@ -2304,6 +2545,30 @@ pub const CALLS: &[Call] = &[
     }),
     Call::new("spherule_kernel::path::sampling::uniform_sphere", |s| {
         seen(spherule_kernel::path::sampling::uniform_sphere(s.draw()))
+    }),
+    Call::new("spherule_kernel::path::scenery::Scenery::spheres_at", |s| {
+        seen(spherule_kernel::path::Scenery::spheres_at(
+            &s.draw::<odd::OddScenery>().get(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::path::shadow::Shadow::is_some", |s| {
+        seen(spherule_kernel::path::Shadow::is_some(&s.draw()))
+    }),
+    Call::new("spherule_kernel::path::step::Samples::of", |s| {
+        seen(spherule_kernel::path::Samples::of(
+            &s.draw(),
+            s.draw(),
+            &s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::path::step::start", |s| {
+        seen(spherule_kernel::path::start(
+            &s.draw::<odd::OddScenery>().get(),
+            s.draw(),
+            &s.draw(),
+        ))
     }),
     Call::new("spherule_kernel::path::step::trace_pixel", |s| {
         seen(spherule_kernel::path::trace_pixel(
@@ -2892,7 +3157,7 @@ impl Odd for spherule::device::kernel::LaunchTime {
 
 impl Odd for spherule::error::Error {
     fn odd(s: &mut Source) -> Self {
-        match s.below(18) {
+        match s.below(19) {
             0 => spherule::error::Error::NoAdapter {
                 wanted: Odd::odd(s),
                 found: Odd::odd(s),
@@ -2915,56 +3180,64 @@ impl Odd for spherule::error::Error {
                 limit: Odd::odd(s),
                 device: Odd::odd(s),
             },
-            5 => spherule::error::Error::OutOfMemory {
+            5 => spherule::error::Error::SkyTooLarge {
+                width: Odd::odd(s),
+                height: Odd::odd(s),
+                needed: Odd::odd(s),
+                limit: Odd::odd(s),
+                device: Odd::odd(s),
+                fits: Odd::odd(s),
+            },
+            6 => spherule::error::Error::OutOfMemory {
                 device: Odd::odd(s),
                 during: Odd::odd(s),
             },
-            6 => spherule::error::Error::OutOfHostMemory {
+            7 => spherule::error::Error::OutOfHostMemory {
                 needed: Odd::odd(s),
                 available: Odd::odd(s),
                 purpose: Odd::odd(s),
             },
-            7 => spherule::error::Error::Threads {
+            8 => spherule::error::Error::Threads {
                 reason: Odd::odd(s),
             },
-            8 => spherule::error::Error::LaunchLimits {
+            9 => spherule::error::Error::LaunchLimits {
                 kernel: Odd::odd(s),
                 device: Odd::odd(s),
                 what: Odd::odd(s),
                 asked: Odd::odd(s),
                 limit: Odd::odd(s),
             },
-            9 => spherule::error::Error::Validation {
+            10 => spherule::error::Error::Validation {
                 during: Odd::odd(s),
                 reason: Odd::odd(s),
             },
-            10 => spherule::error::Error::DeviceLost {
+            11 => spherule::error::Error::DeviceLost {
                 device: Odd::odd(s),
                 during: Odd::odd(s),
                 reason: Odd::odd(s),
             },
-            11 => spherule::error::Error::Timeout {
+            12 => spherule::error::Error::Timeout {
                 device: Odd::odd(s),
                 during: Odd::odd(s),
                 limit: Odd::odd(s),
             },
-            12 => spherule::error::Error::RungRefused {
+            13 => spherule::error::Error::RungRefused {
                 rung: Odd::odd(s),
                 device: Odd::odd(s),
                 reason: Odd::odd(s),
             },
-            13 => spherule::error::Error::Readback {
+            14 => spherule::error::Error::Readback {
                 what: Odd::odd(s),
                 device: Odd::odd(s),
                 reason: Odd::odd(s),
             },
-            14 => spherule::error::Error::Scene(Odd::odd(s)),
-            15 => spherule::error::Error::Image {
+            15 => spherule::error::Error::Scene(Odd::odd(s)),
+            16 => spherule::error::Error::Image {
                 path: Odd::odd(s),
                 reason: Odd::odd(s),
                 help: Odd::odd(s),
             },
-            16 => spherule::error::Error::Output {
+            17 => spherule::error::Error::Output {
                 path: Odd::odd(s),
                 reason: Odd::odd(s),
                 help: Odd::odd(s),
@@ -2995,6 +3268,49 @@ impl Odd for spherule::error::SceneError {
             message: Odd::odd(s),
             help: Odd::odd(s),
             place: Odd::odd(s),
+        }
+    }
+}
+
+impl Odd for spherule::film::agreement::Agreement {
+    fn odd(s: &mut Source) -> Self {
+        spherule::film::agreement::Agreement {
+            worst: Odd::odd(s),
+            limit: Odd::odd(s),
+            regions: Odd::odd(s),
+        }
+    }
+}
+
+impl Odd for spherule::film::agreement::Channel {
+    fn odd(s: &mut Source) -> Self {
+        match s.below(3) {
+            0 => spherule::film::agreement::Channel::Red,
+            1 => spherule::film::agreement::Channel::Green,
+            _ => spherule::film::agreement::Channel::Blue,
+        }
+    }
+}
+
+impl Odd for spherule::film::agreement::Compared {
+    fn odd(s: &mut Source) -> Self {
+        match s.below(2) {
+            0 => spherule::film::agreement::Compared::Mean,
+            _ => spherule::film::agreement::Compared::Brighter,
+        }
+    }
+}
+
+impl Odd for spherule::film::agreement::Worst {
+    fn odd(s: &mut Source) -> Self {
+        spherule::film::agreement::Worst {
+            x: Odd::odd(s),
+            y: Odd::odd(s),
+            width: Odd::odd(s),
+            height: Odd::odd(s),
+            channel: Odd::odd(s),
+            compared: Odd::odd(s),
+            errors: Odd::odd(s),
         }
     }
 }
@@ -3066,8 +3382,11 @@ impl Odd for spherule::render::paths::budget::Reached {
     fn odd(s: &mut Source) -> Self {
         spherule::render::paths::budget::Reached {
             samples: Odd::odd(s),
+            most_samples: Odd::odd(s),
+            mean_samples: Odd::odd(s),
             asked: Odd::odd(s),
             noise: Odd::odd(s),
+            is_upper_estimate: Odd::odd(s),
             stopped_by: Odd::odd(s),
         }
     }
@@ -3225,10 +3544,24 @@ impl Odd for spherule_kernel::film::PathLaunch {
             called_effects: Odd::odd(s),
             has_ambient_sky: Odd::odd(s),
             has_plain_sky: Odd::odd(s),
-            padding: Odd::odd(s),
+            is_adaptive: Odd::odd(s),
             glass_at_eye: Odd::odd(s),
             sky: Odd::odd(s),
             fog: Odd::odd(s),
+            filter: Odd::odd(s),
+            indirect_limit: Odd::odd(s),
+            first_caster: Odd::odd(s),
+            padding: Odd::odd(s),
+        }
+    }
+}
+
+impl Odd for spherule_kernel::filter::Filter {
+    fn odd(s: &mut Source) -> Self {
+        spherule_kernel::filter::Filter {
+            kind: Odd::odd(s),
+            width: Odd::odd(s),
+            padding: Odd::odd(s),
         }
     }
 }
@@ -3276,7 +3609,7 @@ impl Odd for spherule_kernel::light::Light {
             probability: Odd::odd(s),
             sphere: Odd::odd(s),
             height: Odd::odd(s),
-            padding: Odd::odd(s),
+            leaf: Odd::odd(s),
         }
     }
 }
@@ -3321,6 +3654,38 @@ impl Odd for spherule_kernel::material::optics::Incidence {
         spherule_kernel::material::optics::Incidence {
             cosine: Odd::odd(s),
             eta: Odd::odd(s),
+        }
+    }
+}
+
+impl Odd for spherule_kernel::path::Shadow {
+    fn odd(s: &mut Source) -> Self {
+        spherule_kernel::path::Shadow {
+            ray: Odd::odd(s),
+            left: Odd::odd(s),
+            light: Odd::odd(s),
+            scatterings: Odd::odd(s),
+        }
+    }
+}
+
+impl Odd for spherule_kernel::path::caustic::casters::Entry {
+    fn odd(s: &mut Source) -> Self {
+        spherule_kernel::path::caustic::casters::Entry {
+            sphere: Odd::odd(s),
+            hollow: Odd::odd(s),
+            probability: Odd::odd(s),
+        }
+    }
+}
+
+impl Odd for spherule_kernel::path::caustic::ways::Caster {
+    fn odd(s: &mut Source) -> Self {
+        spherule_kernel::path::caustic::ways::Caster {
+            kind: Odd::odd(s),
+            radius: Odd::odd(s),
+            hollow: Odd::odd(s),
+            index: Odd::odd(s),
         }
     }
 }

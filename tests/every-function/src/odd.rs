@@ -24,11 +24,14 @@ use spherule::kernel::accel::node::Node;
 use spherule::kernel::accel::traversal::OneByOne;
 use spherule::kernel::cull::cone::{Cone, Sight};
 use spherule::kernel::cull::frustum::{Frustum, Plane};
+use spherule::kernel::filter::Filter;
 use spherule::kernel::glam::{UVec2, UVec3, UVec4, Vec2, Vec3, Vec4};
 use spherule::kernel::material::microfacet::{Albedo, RoughMetal};
 use spherule::kernel::material::plastic::Plastic;
-use spherule::kernel::path::Scenery;
+use spherule::kernel::path::caustic::ball::Ball;
+use spherule::kernel::path::caustic::ways::Ways;
 use spherule::kernel::path::random::{Sampler, VertexNumbers};
+use spherule::kernel::path::{Path, Scenery, start};
 use spherule::kernel::{
     Accumulator, Camera, Effects, Launch, Light, Material, PathLaunch, Pixel, Rung, Shading, Sphere,
 };
@@ -39,7 +42,7 @@ use spherule::render::pace::Pace;
 use spherule::render::{EffectChoice, Settings};
 use spherule::render::{cpu, gpu, paths};
 use spherule::scene::surroundings::{Develop, EnvironmentImage, Lens, Sun, Surroundings, Tonemap};
-use spherule::scene::{FogBall, PointLight, Sampling, View, World};
+use spherule::scene::{FogBall, GlassShadows, PointLight, Sampling, View, World};
 use spherule::trace::gpu::Batch;
 use spherule::trace::{CpuTracer, GpuTracer};
 use spherule::{Gpu, Image, Scene, kernel_module};
@@ -654,6 +657,26 @@ impl Odd for Sampler {
     }
 }
 
+impl Odd for Path {
+    fn odd(s: &mut Source) -> Self {
+        let scenery = OddScenery::odd(s);
+        start(&scenery.get(), Odd::odd(s), &Odd::odd(s))
+    }
+}
+
+impl Odd for Ball {
+    fn odd(s: &mut Source) -> Self {
+        let kind = s.below(4) as u32;
+        Self::new(kind, s.draw(), s.draw(), s.draw(), s.draw(), s.draw())
+    }
+}
+
+impl Odd for Ways {
+    fn odd(s: &mut Source) -> Self {
+        Self::new(s.draw(), s.draw(), s.draw(), s.draw())
+    }
+}
+
 impl Odd for VertexNumbers {
     fn odd(s: &mut Source) -> Self {
         Sampler::odd(s).at_vertex(Odd::odd(s))
@@ -787,6 +810,7 @@ pub struct OddScenery {
     materials: Vec<Material>,
     lights: Vec<Light>,
     tables: Vec<f32>,
+    texels: Vec<f32>,
 }
 
 impl Odd for OddScenery {
@@ -807,6 +831,7 @@ impl Odd for OddScenery {
             materials: Odd::odd(s),
             lights: Odd::odd(s),
             tables: table(s),
+            texels: table(s),
         }
     }
 }
@@ -825,6 +850,7 @@ impl OddScenery {
             materials: &self.materials,
             lights: &self.lights,
             tables: &self.tables,
+            texels: &self.texels,
         }
     }
 }
@@ -1053,6 +1079,10 @@ impl Odd for Sampling {
             ]),
             max_bounces: s.pick(&[0, 1, 20, u32::MAX, 1 << 31]),
             ambient_occlusion: Odd::odd(s),
+            glass_shadows: s.pick(&[GlassShadows::Dark, GlassShadows::Clear]),
+            clamp: Odd::odd(s),
+            filter: Filter::new(s.below(4) as u32, Odd::odd(s)),
+            caustics: Odd::odd(s),
             seed: Odd::odd(s),
         }
     }
@@ -1159,7 +1189,7 @@ impl Odd for paths::Prepared {
                 3 => prepared.nodes = Odd::odd(s),
                 4 => prepared.velocities = Odd::odd(s),
                 5 => prepared.lights = Odd::odd(s),
-                6 => prepared.tables = Odd::odd(s),
+                6 => (prepared.tables, prepared.texels) = (Odd::odd(s), Odd::odd(s)),
                 7 => prepared.samples = s.below(4) as u32,
                 8 => {
                     let plain = prepared.launch;

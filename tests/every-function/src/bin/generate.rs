@@ -71,6 +71,10 @@ const LEFT_OUT: &[(&str, &str)] = &[
         "takes code: host/trace/search.rs",
     ),
     (
+        "spherule_kernel::path::step::shade",
+        "takes code: trace_pixel calls it",
+    ),
+    (
         "spherule_kernel::shading::Shading::with",
         "takes code: host/render/cpu.rs",
     ),
@@ -242,6 +246,9 @@ const BY_HAND: &[&str] = &[
     "spherule_kernel::material::plastic::Plastic",
     "spherule_kernel::path::random::Sampler",
     "spherule_kernel::path::random::VertexNumbers",
+    "spherule_kernel::path::light_path::Path",
+    "spherule_kernel::path::caustic::ball::Ball",
+    "spherule_kernel::path::caustic::ways::Ways",
     "spherule_kernel::sphere::Sphere",
 ];
 
