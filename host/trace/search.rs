@@ -6,6 +6,7 @@
 //! [`bounds`](spherule_kernel::cull::bounds) leave open.
 
 use glam::{Mat4, Vec4};
+#[cfg(target_arch = "x86_64")]
 use spherule_kernel::Effects;
 use spherule_kernel::accel::brute::{MovingSpheres, Spheres};
 use spherule_kernel::accel::node::Tree;
@@ -78,6 +79,7 @@ pub(super) fn left(lefts: &[u32], ray: usize) -> u32 {
 /// Spheres that may be contiguous in memory.
 pub trait Resting: Spheres {
     /// All spheres as [`Spheres::sphere`] returns them; `None` if they move.
+    #[cfg(target_arch = "x86_64")]
     fn at_rest(&self) -> Option<&[Sphere]>;
 
     /// The index of the sphere over which rays pass, [`Hit::NONE_SPHERE`] for none.
@@ -85,6 +87,7 @@ pub trait Resting: Spheres {
 }
 
 impl Resting for [Sphere] {
+    #[cfg(target_arch = "x86_64")]
     #[inline]
     fn at_rest(&self) -> Option<&[Sphere]> {
         Some(self)
@@ -97,6 +100,7 @@ impl Resting for [Sphere] {
 }
 
 impl Resting for MovingSpheres<'_> {
+    #[cfg(target_arch = "x86_64")]
     #[inline]
     fn at_rest(&self) -> Option<&[Sphere]> {
         let moves = self.effects.any(Effects::MOTION_BLUR) & !self.velocities.is_empty();
