@@ -3,10 +3,7 @@
 
 mod common;
 
-use std::f64::consts::PI;
-use std::sync::OnceLock;
-
-use common::{all_adapters, device};
+use common::devices;
 use glam::Vec3;
 use spherule::kernel::color::luminance;
 use spherule::kernel::{Effects, Material, Sphere};
@@ -14,18 +11,7 @@ use spherule::render::{QUIET, Settings, render};
 use spherule::scene::surroundings::{PointLight, Sun, Surroundings};
 use spherule::scene::{FogBall, View, World};
 use spherule::{Device, Scene};
-
-/// The CPU, and every adapter.
-fn devices() -> &'static [(String, Device)] {
-    static DEVICES: OnceLock<Vec<(String, Device)>> = OnceLock::new();
-    DEVICES.get_or_init(|| {
-        let adapters = all_adapters().iter();
-        let gpus = adapters.map(|adapter| (adapter.get_info().name, device(adapter)));
-        std::iter::once(("CPU".to_owned(), Device::Cpu))
-            .chain(gpus)
-            .collect()
-    })
-}
+use std::f64::consts::PI;
 
 /// Luminances of the pixels of an image.
 fn luminances(scene: &Scene, device: &Device) -> Vec<f64> {

@@ -4,9 +4,7 @@
 
 mod common;
 
-use std::sync::OnceLock;
-
-use common::{all_adapters, device};
+use common::devices;
 use glam::{DVec3, Vec3};
 use spherule::kernel::color::luminance;
 use spherule::kernel::filter::Filter;
@@ -85,18 +83,6 @@ impl Place {
         world.add(Sphere::new(center.as_vec3(), radius), lamp);
         (f64::from(radius) / 4.0).powi(2)
     }
-}
-
-/// The CPU, and every adapter.
-fn devices() -> &'static [(String, Device)] {
-    static DEVICES: OnceLock<Vec<(String, Device)>> = OnceLock::new();
-    DEVICES.get_or_init(|| {
-        let adapters = all_adapters().iter();
-        let gpus = adapters.map(|adapter| (adapter.get_info().name, device(adapter)));
-        std::iter::once(("CPU".to_owned(), Device::Cpu))
-            .chain(gpus)
-            .collect()
-    })
 }
 
 /// The mean luminance of the image, and its standard error.

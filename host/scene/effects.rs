@@ -246,15 +246,14 @@ impl<'a> Asked<'a> {
 
     /// How many spheres glow.
     fn count_of_glowing(&self) -> usize {
-        let world = &self.scene.world;
-        let glows: Vec<bool> = world
-            .materials
-            .iter()
-            .map(|material| material.kind == Material::EMISSIVE)
-            .collect();
         if self.glow.is_none() {
             return 0;
         }
+        let world = &self.scene.world;
+        let materials = world.materials.iter();
+        let glows: Vec<bool> = materials
+            .map(|material| material.kind == Material::EMISSIVE)
+            .collect();
         let ids = world.material_ids.iter();
         ids.filter(|id| glows.get(**id as usize) == Some(&true))
             .count()

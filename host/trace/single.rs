@@ -106,7 +106,8 @@ impl<'a> Single<'a> {
         !self.query.tree.is_none()
     }
 
-    fn trace_one<const ANY: bool, S: Resting + ?Sized>(&self, ray: &Ray, spheres: &S) -> Hit {
+    /// Finds what one ray hits, as [`Single::trace`] does for many.
+    pub fn trace_one<const ANY: bool, S: Resting + ?Sized>(&self, ray: &Ray, spheres: &S) -> Hit {
         if !self.has_tree() {
             let mut search = self.query.search(ray, spheres.left());
             search.test::<ANY, S>(spheres, 0, spheres.count());

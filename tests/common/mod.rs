@@ -46,6 +46,18 @@ pub fn device(adapter: &wgpu::Adapter) -> Device {
     Device::Gpu(Box::new(open(adapter, GpuOptions::default())))
 }
 
+/// The CPU, and every adapter.
+pub fn devices() -> &'static [(String, Device)] {
+    static DEVICES: OnceLock<Vec<(String, Device)>> = OnceLock::new();
+    DEVICES.get_or_init(|| {
+        let adapters = all_adapters().iter();
+        let gpus = adapters.map(|adapter| (adapter.get_info().name, device(adapter)));
+        std::iter::once(("CPU".to_owned(), Device::Cpu))
+            .chain(gpus)
+            .collect()
+    })
+}
+
 pub fn open_with_limits(adapter: &wgpu::Adapter, limits: wgpu::Limits) -> Gpu {
     let options = GpuOptions::default().limits(limits);
     open(adapter, options)

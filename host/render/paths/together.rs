@@ -8,7 +8,6 @@
 use std::cell::Cell;
 
 use glam::UVec2;
-use spherule_kernel::accel::traversal::Traversal;
 use spherule_kernel::path::random::Sampler;
 use spherule_kernel::path::{Path, Samples, Scenery, Shadow, shade, start};
 use spherule_kernel::{Accumulator, Effects, Hit, Ray};
@@ -19,26 +18,21 @@ use crate::trace::single::Single;
 struct UnderWay {
     /// The index of its pixel among those that are traced.
     slot: usize,
-    /// Its pixel of the image.
-    pixel: UVec2,
-    sample: u32,
-    /// The sample after the pixel's last.
-    end: u32,
+    /// Its sample, and those of its pixel that are to follow.
+    samples: Samples,
     sampler: Sampler,
     path: Path,
     goes_on: bool,
 }
 
 impl UnderWay {
-    /// Starts the path of a sample.
+    /// Starts the path of the first of these samples.
     #[inline(always)]
     fn of(scenery: &Scenery<'_, Single<'_>>, slot: usize, samples: Samples) -> Self {
         let sampler = Sampler::of(scenery.launch, samples.pixel, samples.first);
         Self {
             slot,
-            pixel: samples.pixel,
-            sample: samples.first,
-            end: samples.end,
+            samples,
             sampler,
             path: start(scenery, samples.pixel, &sampler),
             goes_on: true,
@@ -65,10 +59,15 @@ pub(super) fn trace_pixels(
         }
     }
     let mut rays = Rays::default();
+    // Shadow rays with the index of their path, those of a path in the order in which it receives
+    // their light.
+    let mut shadows: Vec<(usize, Shadow)> = Vec::new();
     while !paths.is_empty() {
-        rays.trace_paths(scenery, &paths);
-        rays.shadows.clear();
-        for (index, (of, hit)) in paths.iter_mut().zip(&rays.hits).enumerate() {
+        let asked = paths.iter().map(|of| &of.path);
+        let asked = asked.map(|path| (path.ray(), path.left(), path.time()));
+        let hits = rays.trace::<false>(scenery, asked);
+        shadows.clear();
+        for (index, (of, hit)) in paths.iter_mut().zip(hits).enumerate() {
             let hit = of.path.or_exit(*hit);
             // Of lamps, and ambient light.
             let found = [Cell::new(None), Cell::new(None)];
@@ -79,23 +78,27 @@ pub(super) fn trace_pixels(
             };
             of.goes_on = shade(scenery, &mut of.path, &of.sampler, hit, receive);
             let found = found.into_iter().filter_map(Cell::into_inner);
-            rays.shadows.extend(found.map(|shadow| (index, shadow)));
+            shadows.extend(found.map(|shadow| (index, shadow)));
         }
-        rays.trace_shadows(scenery, &mut paths);
+        let asked = shadows.iter().map(|(index, shadow)| {
+            let time = paths[*index].path.time();
+            (shadow.ray, shadow.left, time)
+        });
+        let hits = rays.trace::<true>(scenery, asked);
+        for ((index, shadow), _) in shadows.iter().zip(hits).filter(|(_, hit)| !hit.is_some()) {
+            let path = &mut paths[*index].path;
+            path.receive(scenery.effects, shadow.light, shadow.scatterings);
+        }
         let mut index = 0;
         while let Some(of) = paths.get_mut(index) {
             if of.goes_on {
                 index += 1;
                 continue;
             }
-            of.path.end(scenery, of.sample, &mut pixels[of.slot]);
-            let samples = Samples {
-                pixel: of.pixel,
-                first: of.sample + 1,
-                end: of.end,
-            };
-            if samples.first < samples.end {
-                *of = UnderWay::of(scenery, of.slot, samples);
+            of.path.end(scenery, of.samples.first, &mut pixels[of.slot]);
+            of.samples.first += 1;
+            if of.samples.first < of.samples.end {
+                *of = UnderWay::of(scenery, of.slot, of.samples);
                 index += 1;
             } else {
                 paths.swap_remove(index);
@@ -110,75 +113,33 @@ struct Rays {
     rays: Vec<Ray>,
     lefts: Vec<u32>,
     hits: Vec<Hit>,
-    /// Shadow rays with the index of their path, those of a path in the order in which it receives
-    /// their light.
-    shadows: Vec<(usize, Shadow)>,
 }
 
 impl Rays {
-    /// Finds the hit of each path.
+    /// Finds what each ray hits: the nearest, or with `ANY` the first that is found. A ray comes
+    /// with the index of the sphere over which it passes, and with its time.
     #[inline(always)]
-    fn trace_paths(&mut self, scenery: &Scenery<'_, Single<'_>>, paths: &[UnderWay]) {
-        self.hits.clear();
-        self.hits.resize(paths.len(), Hit::NONE);
-        if are_in_motion(scenery) {
-            for (hit, of) in self.hits.iter_mut().zip(paths) {
-                let spheres = scenery.spheres_at(of.path.time(), of.path.left());
-                *hit = scenery.traversal.nearest_hit(&of.path.ray(), &spheres);
-            }
-            return;
+    fn trace<const ANY: bool>(
+        &mut self,
+        scenery: &Scenery<'_, Single<'_>>,
+        asked: impl Iterator<Item = (Ray, u32, f32)> + Clone,
+    ) -> &[Hit] {
+        let Self { rays, lefts, hits } = self;
+        let single = &scenery.traversal;
+        hits.clear();
+        if scenery.effects.any(Effects::MOTION_BLUR) && !scenery.velocities.is_empty() {
+            // Each ray meets spheres where they are at its own time.
+            hits.extend(asked.map(|(ray, left, time)| {
+                single.trace_one::<ANY, _>(&ray, &scenery.spheres_at(time, left))
+            }));
+            return hits;
         }
-        self.rays.clear();
-        self.rays.extend(paths.iter().map(|of| of.path.ray()));
-        self.lefts.clear();
-        self.lefts.extend(paths.iter().map(|of| of.path.left()));
-        let hits = &mut self.hits;
-        let (rays, lefts) = (&self.rays, &self.lefts);
-        let put = |index: usize, hit| hits[index] = hit;
-        scenery
-            .traversal
-            .trace::<false>(rays, lefts, scenery.spheres, put);
+        rays.clear();
+        lefts.clear();
+        rays.extend(asked.clone().map(|(ray, ..)| ray));
+        lefts.extend(asked.map(|(_, left, _)| left));
+        hits.resize(rays.len(), Hit::NONE);
+        single.trace::<ANY>(rays, lefts, scenery.spheres, |index, hit| hits[index] = hit);
+        hits
     }
-
-    /// Lets paths receive the light of shadow rays that meet nothing.
-    #[inline(always)]
-    fn trace_shadows(&mut self, scenery: &Scenery<'_, Single<'_>>, paths: &mut [UnderWay]) {
-        let shadows = &self.shadows;
-        if are_in_motion(scenery) {
-            for (index, shadow) in shadows {
-                let path = &mut paths[*index].path;
-                let spheres = scenery.spheres_at(path.time(), shadow.left);
-                if !scenery.traversal.is_occluded(&shadow.ray, &spheres) {
-                    path.receive(scenery.effects, shadow.light, shadow.scatterings);
-                }
-            }
-            return;
-        }
-        self.rays.clear();
-        self.rays
-            .extend(shadows.iter().map(|(_, shadow)| shadow.ray));
-        self.lefts.clear();
-        self.lefts
-            .extend(shadows.iter().map(|(_, shadow)| shadow.left));
-        self.hits.clear();
-        self.hits.resize(shadows.len(), Hit::NONE);
-        let hits = &mut self.hits;
-        let (rays, lefts) = (&self.rays, &self.lefts);
-        let put = |index: usize, hit| hits[index] = hit;
-        scenery
-            .traversal
-            .trace::<true>(rays, lefts, scenery.spheres, put);
-        for ((index, shadow), hit) in shadows.iter().zip(&self.hits) {
-            if !hit.is_some() {
-                let path = &mut paths[*index].path;
-                path.receive(scenery.effects, shadow.light, shadow.scatterings);
-            }
-        }
-    }
-}
-
-/// Whether rays meet spheres at times of their own.
-#[inline(always)]
-fn are_in_motion(scenery: &Scenery<'_, Single<'_>>) -> bool {
-    scenery.effects.any(Effects::MOTION_BLUR) && !scenery.velocities.is_empty()
 }
