@@ -2,8 +2,9 @@
 //!
 //! Memory that grows with a scene or an image is allocated in ways that can fail
 //! (`host/memory.rs`). All other allocations are small. If one of them fails, Rust ends the process
-//! by SIGABRT, and so do graphics drivers. [`Allocator`] notes the size of a failed allocation; the
-//! handler of the signal prints a message and ends the command with 1.
+//! by SIGABRT, and so do graphics drivers, unless they use the null pointer that they got and end it
+//! by SIGSEGV. [`Allocator`] notes the size of a failed allocation; the handlers of these signals
+//! print a message and end the command with 1.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -62,11 +63,23 @@ pub unsafe fn spare_addresses() {
     }
 }
 
-/// Handles SIGABRT from now on.
+/// Handles SIGABRT from now on, and SIGSEGV if memory is limited.
 #[cfg(unix)]
 pub(super) fn install() {
     // Whether there is a limit does not change, and a signal handler must not look it up.
     let is_limited = crate::memory::limit().is_some();
+    if is_limited {
+        let handler: extern "C" fn(libc::c_int) = on_invalid_access;
+        // SAFETY: `sigaction` reads a struct that is valid when zeroed. The handler writes to a file
+        // descriptor and ends the process; neither allocates or locks. On the stack for signals, if
+        // the thread has one, and once: what crashes in the handler ends the process as usual.
+        unsafe {
+            let mut action: libc::sigaction = std::mem::zeroed();
+            action.sa_sigaction = handler as libc::sighandler_t;
+            action.sa_flags = libc::SA_ONSTACK | libc::SA_RESETHAND;
+            libc::sigaction(libc::SIGSEGV, &raw const action, std::ptr::null_mut());
+        }
+    }
     // SAFETY: the handler reads an atomic, writes to a file descriptor and ends the process; none
     // of these allocates or locks.
     let _ = unsafe {
@@ -79,16 +92,31 @@ pub(super) fn install() {
 #[cfg(not(unix))]
 pub(super) fn install() {}
 
+/// Memory is limited, and something used a pointer that is none: most likely to memory that it did
+/// not get.
+#[cfg(unix)]
+extern "C" fn on_invalid_access(_: libc::c_int) {
+    write(
+        b"  \xc3\x97 probably out of memory: a part of the program crashed, and its memory is limited\n",
+    );
+    write(HELP);
+    signal_hook::low_level::exit(1);
+}
+
+#[cfg(unix)]
+const HELP: &[u8] =
+    b"  help: render a smaller image or fewer spheres, or give the process more memory \
+    (`ulimit -v` and `ulimit -d` show its limits)\n";
+
+#[cfg(unix)]
+fn write(text: &[u8]) {
+    // SAFETY: the pointer and the length are those of a slice.
+    let _ = unsafe { libc::write(libc::STDERR_FILENO, text.as_ptr().cast(), text.len()) };
+}
+
 #[cfg(unix)]
 fn on_abort(is_limited: bool) {
-    const HELP: &[u8] =
-        b"  help: render a smaller image or fewer spheres, or give the process more memory \
-        (`ulimit -v` and `ulimit -d` show its limits)\n";
     let refused = REFUSED.load(Ordering::Relaxed);
-    let write = |text: &[u8]| {
-        // SAFETY: the pointer and the length are those of a slice.
-        let _ = unsafe { libc::write(libc::STDERR_FILENO, text.as_ptr().cast(), text.len()) };
-    };
     if refused > 0 {
         write(b"  \xc3\x97 out of memory: could not allocate ");
         let mut digits = [0; 20];

@@ -62,6 +62,12 @@ impl<'a> Query<'a> {
         }
     }
 
+    /// The parameter at which a ray hits a sphere, by the rung's formula.
+    #[inline]
+    pub(super) fn intersect(&self, sphere: Sphere, ray: &Ray) -> f32 {
+        (self.intersect)(sphere, ray)
+    }
+
     /// Starts the search of a ray that leaves the sphere with the index `left`: see
     /// [`Resting::left`].
     #[inline(always)]

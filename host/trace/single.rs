@@ -72,13 +72,13 @@ impl<'a> Single<'a> {
         spheres: &[Sphere],
         mut put: impl FnMut(usize, Hit),
     ) {
-        if few::has_lanes(self.query.rung) && spheres.len() <= few::FEW {
-            few::trace::<ANY>(self.level, self.query.rung, rays, lefts, spheres, put);
+        if self.query.rung.is_bounded() && spheres.len() <= few::FEW {
+            few::trace::<ANY>(self.level, &self.query, rays, lefts, spheres, put);
             return;
         }
         #[cfg(target_arch = "x86_64")]
         if let Some((wide, levels)) = self.levels
-            && (few::has_lanes(self.query.rung) || levels.groups.len() <= 2)
+            && (stream::has_lanes(self.query.rung) || levels.groups.len() <= 2)
             && levels.sphere_count <= spheres.len()
         {
             // SAFETY: the machine has AVX-512, as the proof says.

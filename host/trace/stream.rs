@@ -18,7 +18,6 @@ use spherule_kernel::{Hit, Ray, Rung, Sphere};
 
 use super::avx512::{Avx512, LANES};
 use super::boxes::near_and_far;
-use super::few::has_lanes;
 use super::levels::{Group, Levels};
 use super::search::{Query, Resting, left};
 use super::sixteen::{RayPlanes, Sixteen, end_of, is_plain};
@@ -29,6 +28,11 @@ use crate::lanes::Single16;
 const MOST: usize = 64 * LANES;
 /// The most boxes at the bottom of two levels.
 const MOST_ALONE: usize = 1024;
+/// Whether the rung's formula is there in lanes.
+pub(super) fn has_lanes(rung: Rung) -> bool {
+    matches!(rung, Rung::Robust | Rung::Double)
+}
+
 /// The most pairs of rays and spheres that wait for the rung.
 const WAITING: usize = 1024;
 

@@ -62,10 +62,13 @@ impl<L: Lane> Quadratic<L> {
         let zero = self.a.splat(0.0);
         let root = square_root(self.discriminant);
         let leaves = self.b.simd_ge(zero);
-        let size = L::choose(leaves, || self.b + root, || root - self.b);
+        let size = L::select(leaves, self.b + root, root - self.b);
         let outer = quotient(size, self.a);
-        let inner = L::choose(size.simd_gt(zero), || quotient(self.c, size), || zero);
-        L::choose_pair(leaves, || (-outer, -inner), || (inner, outer))
+        let inner = L::select(size.simd_gt(zero), quotient(self.c, size), zero);
+        (
+            L::select(leaves, -outer, inner),
+            L::select(leaves, -inner, outer),
+        )
     }
 }
 
@@ -105,11 +108,9 @@ impl Precision for Double {
 #[must_use]
 pub fn square_root<L: Lane>(x: L) -> L {
     let zero = x.splat(0.0);
-    let newton = || {
-        let root = x.sqrt();
-        root + (x - root * root) / (root + root)
-    };
-    L::choose(x.simd_gt(zero), newton, || zero)
+    let root = x.sqrt();
+    let newton = root + (x - root * root) / (root + root);
+    L::select(x.simd_gt(zero), newton, zero)
 }
 
 /// x / y, with one Newton step.
