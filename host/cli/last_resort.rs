@@ -2,9 +2,9 @@
 //!
 //! Memory that grows with a scene or an image is allocated in ways that can fail
 //! (`host/memory.rs`). All other allocations are small. If one of them fails, Rust ends the process
-//! by SIGABRT, and so do graphics drivers, unless they use the null pointer that they got and end it
-//! by SIGSEGV. [`Allocator`] notes the size of a failed allocation; the handlers of these signals
-//! print a message and end the command with 1.
+//! by SIGABRT, and so do graphics drivers, unless they use the null pointer that they got and end
+//! it by SIGSEGV. [`Allocator`] notes the size of a failed allocation; the handlers of these
+//! signals print a message and end the command with 1.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -70,9 +70,9 @@ pub(super) fn install() {
     let is_limited = crate::memory::limit().is_some();
     if is_limited {
         let handler: extern "C" fn(libc::c_int) = on_invalid_access;
-        // SAFETY: `sigaction` reads a struct that is valid when zeroed. The handler writes to a file
-        // descriptor and ends the process; neither allocates or locks. On the stack for signals, if
-        // the thread has one, and once: what crashes in the handler ends the process as usual.
+        // SAFETY: `sigaction` reads a struct that is valid when zeroed. The handler writes to a
+        // file descriptor and ends the process; neither allocates or locks. On the stack for
+        // signals, if the thread has one, and once: what crashes in the handler ends the process.
         unsafe {
             let mut action: libc::sigaction = std::mem::zeroed();
             action.sa_sigaction = handler as libc::sighandler_t;

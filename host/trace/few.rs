@@ -55,6 +55,32 @@ pub(super) fn trace<const ANY: bool>(
     }
 }
 
+/// Finds where each ray hits a sphere of its own, whatever other spheres there are. There are as
+/// many as rays. `put` receives the ray's index and the parameter, [`Hit::NONE_T`] if there is no
+/// hit.
+///
+/// The query's rung must be [bounded](Rung::is_bounded).
+pub(super) fn meet(
+    level: Level,
+    query: &Query<'_>,
+    rays: &[Ray],
+    spheres: &[Sphere],
+    mut put: impl FnMut(usize, f32),
+) {
+    let some = rays.chunks(LANES).zip(spheres.chunks(LANES));
+    for (some, (rays, spheres)) in some.enumerate() {
+        let group = Group::of(rays, &[]);
+        let mut open: [u64; LANES] =
+            std::array::from_fn(|lane| u64::from(lane < spheres.len()) << lane);
+        let next = Next::of(&mut open, spheres);
+        let found = dispatch!(level, simd => group.meet(simd, query, &next));
+        for (lane, t) in found.iter().enumerate().take(spheres.len()) {
+            let is_hit = *t < group.end[lane];
+            put(some * LANES + lane, if is_hit { *t } else { Hit::NONE_T });
+        }
+    }
+}
+
 /// Numbers side by side, and vectors.
 type Lanes = [f32; LANES];
 type Lanes3 = [Lanes; 3];
@@ -126,7 +152,8 @@ impl Group {
         let mut done = mask32x16::from_bitmask(simd, !self.there & 0xffff);
         for (index, sphere) in spheres.iter().enumerate() {
             let index = u32x16::splat(simd, index as u32);
-            let (meets, near, far) = lines.roots(simd, *sphere);
+            let center = Single16::splat3(simd, sphere.center());
+            let (meets, near, far) = lines.roots(center, Single16::splat(simd, sphere.radius()));
             let (t, is_within) = root_within(near, far, t_min, end);
             // Of equally near ones the first stays.
             let is_new = meets & is_within & t.simd_lt(nearest) & !index.simd_eq(left);
@@ -156,14 +183,9 @@ impl Group {
         lows: &mut [Lanes; FEW],
     ) -> Found {
         let (mut open, mut found) = self.bound::<S, ANY>(simd, spheres, lows);
-        let lines = DoubleLines::of(simd, self);
         while open.iter().any(|spheres| *spheres != 0) {
             let next = Next::of(&mut open, spheres);
-            let t = if query.rung == Rung::Double {
-                lines.intersect(simd, self, &next)
-            } else {
-                next.intersect(query, self)
-            };
+            let t = self.meet(simd, query, &next);
             for lane in 0..LANES {
                 // Each ray's spheres come in their order: of equally near ones the first stays.
                 if t[lane] < found.t[lane] {
@@ -175,6 +197,28 @@ impl Group {
                 }
             }
         }
+        found
+    }
+
+    /// The parameter of each ray at its sphere; NaN, or the ray's end or more, if there is none.
+    #[inline(always)]
+    fn meet<S: Simd>(&self, simd: S, query: &Query<'_>, next: &Next) -> Lanes {
+        let (meets, near, far) = match query.rung {
+            Rung::Robust => {
+                let center = vectors(simd, &next.center);
+                RobustLines::of(simd, self).roots(center, Single16::load(simd, &next.radius))
+            }
+            Rung::Double => DoubleLines::of(simd, self).roots(simd, next),
+            _ => return next.intersect(query, self),
+        };
+        let (t_min, end) = (
+            Single16::load(simd, &self.t_min),
+            Single16::load(simd, &self.end),
+        );
+        let (t, is_within) = root_within(near, far, t_min, end);
+        let t = Single16::select(meets & is_within, t, Single16::splat(simd, f32::NAN));
+        let mut found = [0.0; LANES];
+        t.store(&mut found);
         found
     }
 
@@ -379,16 +423,19 @@ impl<S: Simd> RobustLines<S> {
         }
     }
 
-    /// Whether each line meets a sphere, and the roots, the smaller first.
+    /// Whether each line meets its sphere, and the roots, the smaller first.
     #[inline(always)]
-    fn roots(&self, simd: S, sphere: Sphere) -> (mask32x16<S>, Single16<S>, Single16<S>) {
-        let (origin, center) = (self.origin, Single16::splat3(simd, sphere.center()));
+    fn roots(
+        &self,
+        center: Lane3<Single16<S>>,
+        radius: Single16<S>,
+    ) -> (mask32x16<S>, Single16<S>, Single16<S>) {
+        let origin = self.origin;
         let o = Lane3 {
             x: origin.x - center.x,
             y: origin.y - center.y,
             z: origin.z - center.z,
         };
-        let radius = Single16::splat(simd, sphere.radius());
         let (d, a) = (self.direction, self.squared);
         let quadratic = robust::Quadratic::of(o, radius, d, a, self.inverse);
         let (near, far) = quadratic.roots();
@@ -410,9 +457,9 @@ impl<S: Simd> DoubleLines<S> {
         }
     }
 
-    /// The parameter of each ray at its sphere; NaN if there is none.
+    /// Whether each line meets its sphere, and the roots, the smaller first.
     #[inline(always)]
-    fn intersect(&self, simd: S, group: &Group, next: &Next) -> Lanes {
+    fn roots(&self, simd: S, next: &Next) -> (mask32x16<S>, Single16<S>, Single16<S>) {
         let (origin, center) = (self.origin, widened(simd, &next.center));
         let o = Lane3 {
             x: origin.x - center.x,
@@ -422,13 +469,8 @@ impl<S: Simd> DoubleLines<S> {
         let radius = Double16::widened(Single16::load(simd, &next.radius));
         let quadratic = double::Quadratic::of(o, radius, self.direction);
         let (near, far) = quadratic.roots();
-        let t_min = Single16::load(simd, &group.t_min);
-        let end = Single16::load(simd, &group.end);
-        let (t, is_within) = root_within(near.rounded(), far.rounded(), t_min, end);
-        let meets = quadratic.meets().narrowed(simd) & is_within;
-        let mut found = [0.0; LANES];
-        Single16::select(meets, t, Single16::splat(simd, f32::NAN)).store(&mut found);
-        found
+        let meets = quadratic.meets().narrowed(simd);
+        (meets, near.rounded(), far.rounded())
     }
 }
 
@@ -497,6 +539,12 @@ mod tests {
                     });
                     assert_eq!(puts, rays.len());
                     assert!(hits > rays.len() / 4, "{hits}");
+                    let own: Vec<Sphere> = (0..rays.len())
+                        .filter_map(|index| spheres.get(index % spheres.len().max(1)).copied())
+                        .collect();
+                    meet(level, &query, rays, &own, |index, t| {
+                        assert_eq!(t, query.intersect(own[index], &rays[index]), "{index}");
+                    });
                     trace::<true>(level, &query, rays, &lefts, &spheres, |index, hit| {
                         assert_eq!(hit.is_some(), expected(index).is_some(), "{index}");
                     });

@@ -102,6 +102,24 @@ impl<'a> Single<'a> {
         }
     }
 
+    /// The instructions of this machine that rays side by side use.
+    #[must_use]
+    pub(crate) fn level(&self) -> Level {
+        self.level
+    }
+
+    /// Finds where each ray hits a sphere of its own, of which there are as many as rays. `put`
+    /// receives the ray's index and the parameter, [`Hit::NONE_T`] if there is no hit.
+    pub(crate) fn meet(&self, rays: &[Ray], spheres: &[Sphere], mut put: impl FnMut(usize, f32)) {
+        if self.query.rung.is_bounded() {
+            few::meet(self.level, &self.query, rays, spheres, put);
+            return;
+        }
+        for (index, (ray, sphere)) in rays.iter().zip(spheres).enumerate() {
+            put(index, self.query.intersect(*sphere, ray));
+        }
+    }
+
     fn has_tree(&self) -> bool {
         !self.query.tree.is_none()
     }

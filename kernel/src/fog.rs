@@ -4,14 +4,15 @@
 //! Light is scattered by the phase function of L. G. Henyey and J. L. Greenstein, Diffuse radiation
 //! in the galaxy, Astrophys. J. 93 (1941).
 
-use core::f32::consts::{FRAC_1_PI, TAU};
+use core::f32::consts::FRAC_1_PI;
 
 use bytemuck::{Pod, Zeroable};
-use glam::{UVec2, Vec2, Vec3};
+use glam::{UVec2, Vec3};
 // On the CPU, std has these functions.
 #[cfg(target_arch = "spirv")]
 use spirv_std::num_traits::Float as _;
 
+use crate::path::random::Pair;
 use crate::path::sampling::{tangents, uniform_sphere};
 use crate::surface::unit;
 
@@ -82,17 +83,17 @@ impl Fog {
     /// Samples the direction into which light that travels along `direction` is scattered.
     #[inline]
     #[must_use]
-    pub fn sample(&self, direction: Vec3, u: Vec2) -> Vec3 {
+    pub fn sample(&self, direction: Vec3, pair: Pair) -> Vec3 {
         let g = self.anisotropy;
         if g.abs() < 1e-3 {
-            return uniform_sphere(u);
+            return uniform_sphere(pair);
         }
-        let ratio = (1.0 - g * g) / (1.0 - g + 2.0 * g * u.x);
+        let ratio = (1.0 - g * g) / (1.0 - g + 2.0 * g * pair.u.x);
         let cosine = ((1.0 + g * g - ratio * ratio) / (2.0 * g)).clamp(-1.0, 1.0);
         let sine = (1.0 - cosine * cosine).sqrt();
-        let angle = TAU * u.y;
+        let around = pair.turn * sine;
         let (x, y) = tangents(direction);
-        unit(x * (sine * angle.cos()) + y * (sine * angle.sin()) + direction * cosine)
+        unit(x * around.x + y * around.y + direction * cosine)
     }
 }
 
@@ -100,6 +101,8 @@ const _: () = assert!(size_of::<Fog>() == 48);
 
 #[cfg(test)]
 mod tests {
+    use core::f32::consts::TAU;
+
     use super::*;
 
     /// The phase function integrates to one, and its mean cosine is g.

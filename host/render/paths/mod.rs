@@ -7,6 +7,7 @@
 //! | [`cpu`], `together` | the kernel's functions over bands of rows, on every thread; paths in step |
 //! | [`gpu`] | the kernel's entry point over tiles and runs of samples |
 //! | [`budget`] | how far a render came, and what ends it |
+//! | `numbers` | random numbers of paths in step, side by side |
 //! | `adaptive` | samples where they are needed, for a noise target |
 //! | `rebase` | moves scenes that are far from the origin to it |
 //! | `preview` | a coarse image, for pixels that have no sample when the time is up |
@@ -17,6 +18,7 @@ pub mod cpu;
 #[cfg(feature = "gpu")]
 pub mod gpu;
 mod lights;
+mod numbers;
 pub mod prepare;
 mod preview;
 mod rebase;

@@ -8,10 +8,12 @@
 use std::cell::Cell;
 
 use glam::UVec2;
-use spherule_kernel::path::random::Sampler;
+use spherule_kernel::path::random::{Sampler, VertexNumbers};
 use spherule_kernel::path::{Path, Samples, Scenery, Shadow, shade, start};
-use spherule_kernel::{Accumulator, Effects, Hit, Ray};
+use spherule_kernel::{Accumulator, Effects, Hit, Ray, Sphere};
 
+use super::numbers::Drawn;
+use crate::lanes::LANES;
 use crate::trace::single::Single;
 
 /// A path under way.
@@ -38,6 +40,12 @@ impl UnderWay {
             goes_on: true,
         }
     }
+
+    /// The random numbers of the vertex that comes next.
+    #[inline(always)]
+    fn numbers(&self) -> VertexNumbers {
+        self.sampler.at_vertex(self.path.bounces())
+    }
 }
 
 /// Adds the samples of a launch to pixels of a tile that is so wide, from the one with index
@@ -58,6 +66,7 @@ pub(super) fn trace_pixels(
             paths.push(UnderWay::of(scenery, slot, samples));
         }
     }
+    let level = scenery.traversal.level();
     let mut rays = Rays::default();
     // Shadow rays with the index of their path, those of a path in the order in which it receives
     // their light.
@@ -67,19 +76,28 @@ pub(super) fn trace_pixels(
         let asked = asked.map(|path| (path.ray(), path.left(), path.time()));
         let hits = rays.trace::<false>(scenery, asked);
         shadows.clear();
-        for (index, (of, hit)) in paths.iter_mut().zip(hits).enumerate() {
-            let hit = of.path.or_exit(*hit);
-            // Of lamps, and ambient light.
-            let found = [Cell::new(None), Cell::new(None)];
-            let receive = |_: &Scenery<'_, _>, _: &mut Path, shadow: Shadow| {
-                let [first, second] = &found;
-                let to = if first.get().is_none() { first } else { second };
-                to.set(shadow.is_some().then_some(shadow));
-            };
-            of.goes_on = shade(scenery, &mut of.path, &of.sampler, hit, receive);
-            let found = found.into_iter().filter_map(Cell::into_inner);
-            shadows.extend(found.map(|shadow| (index, shadow)));
+        for (some, (paths, hits)) in paths.chunks_mut(LANES).zip(hits.chunks(LANES)).enumerate() {
+            // Lanes beyond the last path repeat the first.
+            let mut vertices = [paths[0].numbers(); LANES];
+            for (vertex, of) in vertices.iter_mut().zip(&*paths) {
+                *vertex = of.numbers();
+            }
+            let drawn = Drawn::of(level, &vertices);
+            for (lane, (of, hit)) in paths.iter_mut().zip(hits).enumerate() {
+                let hit = of.path.or_exit(*hit);
+                // Of lamps, and ambient light.
+                let found = [Cell::new(None), Cell::new(None)];
+                let receive = |_: &Scenery<'_, _>, _: &mut Path, shadow: Shadow| {
+                    let [first, second] = &found;
+                    let to = if first.get().is_none() { first } else { second };
+                    to.set(shadow.is_some().then_some(shadow));
+                };
+                of.goes_on = shade(scenery, &mut of.path, &drawn.at(lane), hit, receive);
+                let found = found.into_iter().filter_map(Cell::into_inner);
+                shadows.extend(found.map(|shadow| (some * LANES + lane, shadow)));
+            }
         }
+        rays.end_at_lamps(scenery, &paths, &mut shadows);
         let asked = shadows.iter().map(|(index, shadow)| {
             let time = paths[*index].path.time();
             (shadow.ray, shadow.left, time)
@@ -113,9 +131,39 @@ struct Rays {
     rays: Vec<Ray>,
     lefts: Vec<u32>,
     hits: Vec<Hit>,
+    lamps: Vec<Sphere>,
 }
 
 impl Rays {
+    /// Ends shadow rays to lamps where these begin; those that do not get there go.
+    #[inline(always)]
+    fn end_at_lamps(
+        &mut self,
+        scenery: &Scenery<'_, Single<'_>>,
+        paths: &[UnderWay],
+        shadows: &mut Vec<(usize, Shadow)>,
+    ) {
+        if !scenery.effects.any(Effects::SOFT_SHADOWS) {
+            return;
+        }
+        let Self { rays, lamps, .. } = self;
+        rays.clear();
+        lamps.clear();
+        let waiting = |shadow: &Shadow| shadow.lamp != Hit::NONE_SPHERE;
+        for (index, shadow) in shadows.iter().filter(|(_, shadow)| waiting(shadow)) {
+            rays.push(shadow.whole_ray());
+            lamps.push(scenery.sphere(shadow.lamp as usize, paths[*index].path.time()));
+        }
+        let mut of_lamps = shadows.iter_mut().filter(|(_, shadow)| waiting(shadow));
+        scenery.traversal.meet(rays, lamps, |index, t| {
+            if let Some((_, shadow)) = of_lamps.next() {
+                *shadow = shadow.up_to(shadow.distance(lamps[index], t));
+            }
+        });
+        drop(of_lamps);
+        shadows.retain(|(_, shadow)| shadow.is_some());
+    }
+
     /// Finds what each ray hits: the nearest, or with `ANY` the first that is found. A ray comes
     /// with the index of the sphere over which it passes, and with its time.
     #[inline(always)]
@@ -124,7 +172,9 @@ impl Rays {
         scenery: &Scenery<'_, Single<'_>>,
         asked: impl Iterator<Item = (Ray, u32, f32)> + Clone,
     ) -> &[Hit] {
-        let Self { rays, lefts, hits } = self;
+        let Self {
+            rays, lefts, hits, ..
+        } = self;
         let single = &scenery.traversal;
         hits.clear();
         if scenery.effects.any(Effects::MOTION_BLUR) && !scenery.velocities.is_empty() {

@@ -7,6 +7,7 @@
 //! | [`error_free`] | the exact error of a sum, a difference, a product |
 //! | [`distill`] | the accurate sum of many floats, whatever cancels |
 //! | [`double_single`] | numbers as sums of two floats, about 48 bits |
+//! | [`turn`] | cosine and sine of shares of a turn |
 //! | [`elements`] | elements of arrays and slices, read and written without a panic |
 
 pub mod arctangent;
@@ -15,6 +16,7 @@ pub mod double_single;
 pub mod elements;
 pub mod error_free;
 pub mod strict;
+pub mod turn;
 
 pub use double_single::DoubleSingle;
 

@@ -6,16 +6,17 @@
 pub mod sky;
 pub mod tree;
 
-use core::f32::consts::{FRAC_1_PI, TAU};
+use core::f32::consts::TAU;
 
 use bytemuck::{Pod, Zeroable};
-use glam::{Vec2, Vec3};
+use glam::Vec3;
 // On the CPU, std has `f32::sqrt`.
 #[cfg(target_arch = "spirv")]
 use spirv_std::num_traits::Float as _;
 
 use crate::arithmetic::elements::read;
-use crate::path::sampling::{cone, cone_density, uniform_sphere};
+use crate::path::random::Pair;
+use crate::path::sampling::{cone, cone_density};
 use crate::sphere::Sphere;
 
 /// A light that is sampled. One is chosen at a time, by its probability. In a [tree] of
@@ -101,10 +102,11 @@ impl Light {
 }
 
 /// The light that `u` chooses: the first whose cumulative probability exceeds it. Without lights,
-/// one of probability zero.
+/// one of probability zero. And where `u` is among the numbers that choose that light, from 0 up to
+/// 1: a random number, too.
 #[inline]
 #[must_use]
-pub(crate) fn choose(lights: &[Light], u: f32) -> Light {
+pub(crate) fn choose(lights: &[Light], u: f32) -> (Light, f32) {
     let mut low = 0;
     let mut high = lights.len().max(1) - 1;
     while low < high {
@@ -115,23 +117,33 @@ pub(crate) fn choose(lights: &[Light], u: f32) -> Light {
             low = middle + 1;
         }
     }
-    read(lights, low)
+    let light = read(lights, low);
+    let below = if low > 0 {
+        read(lights, low - 1).cumulative
+    } else {
+        0.0
+    };
+    let share = (u - below) / (light.cumulative - below).max(f32::MIN_POSITIVE);
+    (light, share.clamp(0.0, BELOW_ONE))
 }
+
+/// The largest number below 1.
+const BELOW_ONE: f32 = 1.0 - 1.0 / (1 << 24) as f32;
 
 /// A direction in which a sphere is seen from `point`, and its density; the whole sphere of
 /// directions from inside.
 #[inline]
 #[must_use]
-pub fn sample_sphere(sphere: Sphere, point: Vec3, u: Vec2) -> (Vec3, f32) {
+pub fn sample_sphere(sphere: Sphere, point: Vec3, pair: Pair) -> (Vec3, f32) {
     let towards = sphere.center() - point;
     let squared = towards.dot(towards);
     let height = cone_height(sphere, squared);
-    if height > 0.0 {
-        let direction = cone(towards / squared.sqrt(), height, u);
-        (direction, cone_density(height))
+    let axis = if squared > 0.0 {
+        towards / squared.sqrt()
     } else {
-        (uniform_sphere(u), 0.25 * FRAC_1_PI)
-    }
+        Vec3::Z
+    };
+    (cone(axis, height, pair), cone_density(height))
 }
 
 /// The density of [`sample_sphere`] in a direction that meets the sphere.
@@ -139,12 +151,7 @@ pub fn sample_sphere(sphere: Sphere, point: Vec3, u: Vec2) -> (Vec3, f32) {
 #[must_use]
 pub fn sphere_density(sphere: Sphere, point: Vec3) -> f32 {
     let towards = sphere.center() - point;
-    let height = cone_height(sphere, towards.dot(towards));
-    if height > 0.0 {
-        cone_density(height)
-    } else {
-        0.25 * FRAC_1_PI
-    }
+    cone_density(cone_height(sphere, towards.dot(towards)))
 }
 
 /// 1 − cos of the angle between the middle and the edge of the cap of a lamp from which any light
@@ -160,14 +167,17 @@ pub fn cap_height(lamp: Sphere, ball: Sphere) -> f32 {
 }
 
 /// 1 − cos of the angle between the middle and the edge of a sphere seen from the distance whose
-/// square is given; zero from inside. Without cancellation for small angles.
+/// square is given; from inside 2, which makes all directions a cone. Without cancellation for
+/// small angles, and without a branch.
 #[inline]
 fn cone_height(sphere: Sphere, squared_distance: f32) -> f32 {
     let squared_sine = sphere.radius() * sphere.radius() / squared_distance;
+    let height = squared_sine / (1.0 + (1.0 - squared_sine).max(0.0).sqrt());
     if squared_sine < 1.0 {
-        squared_sine / (1.0 + (1.0 - squared_sine).sqrt())
+        // So that its density is a number.
+        height.max(f32::MIN_POSITIVE)
     } else {
-        0.0
+        2.0
     }
 }
 
@@ -179,3 +189,75 @@ pub fn solid_angle(height: f32) -> f32 {
 }
 
 const _: () = assert!(size_of::<Light>() == 48);
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec2;
+
+    use super::*;
+
+    fn lights<const N: usize>(cumulative: [f32; N]) -> [Light; N] {
+        cumulative.map(|cumulative| Light {
+            cumulative,
+            ..Light::default()
+        })
+    }
+
+    /// What is left of the number that chooses a light goes evenly from 0 up to 1, for each light.
+    #[test]
+    fn what_a_choice_leaves_is_a_random_number() {
+        const STEPS: u32 = 1 << 14;
+        let lights = lights([0.1, 0.1, 0.75, 1.0]);
+        let mut seen = [[0_u32; 4]; 4];
+        for step in 0..STEPS {
+            let (light, left) = choose(&lights, step as f32 / STEPS as f32);
+            let index = lights.iter().position(|other| other == &light);
+            assert!((0.0..1.0).contains(&left), "{left}");
+            seen[index.expect("one of them")][(left * 4.0) as usize] += 1;
+        }
+        for (index, share) in [0.1, 0.0, 0.65, 0.25].into_iter().enumerate() {
+            for count in seen[index] {
+                let expected = 0.25 * share * STEPS as f32;
+                assert!((count as f32 - expected).abs() <= 2.0, "{index}: {count}");
+            }
+        }
+    }
+
+    /// Numbers beyond the last light, and no lights, choose something.
+    #[test]
+    fn every_number_chooses() {
+        let lights = lights([0.5, 0.999]);
+        assert_eq!(choose(&lights, 0.9999).0, lights[1]);
+        let (none, left) = choose(&[], 0.3);
+        assert!(none.probability == 0.0 && (0.0..1.0).contains(&left));
+    }
+
+    /// The density of a lamp's directions is one over the solid angle in which it is seen; from
+    /// inside, over that of all directions, which have no mean.
+    #[test]
+    fn a_lamp_is_sampled_where_it_is_seen() {
+        let lamp = Sphere::new(Vec3::new(0.0, 3.0, 0.0), 1.0);
+        for (point, solid) in [
+            (Vec3::ZERO, TAU * (1.0 - (8.0_f32 / 9.0).sqrt())),
+            (lamp.center(), 2.0 * TAU),
+            (Vec3::new(0.5, 3.0, 0.0), 2.0 * TAU),
+        ] {
+            assert!((sphere_density(lamp, point) * solid - 1.0).abs() < 1e-5);
+            let mut mean = Vec3::ZERO;
+            for step in 0..1024 {
+                let u = Vec2::new(step as f32 + 0.5, (step * 37 % 1024) as f32 + 0.5) / 1024.0;
+                let (direction, density) = sample_sphere(lamp, point, Pair::of(u));
+                assert!((density * solid - 1.0).abs() < 1e-5);
+                assert!((direction.length() - 1.0).abs() < 1e-5);
+                mean += direction / 1024.0;
+            }
+            // The mean cosine of a cone is that of the middle of its height.
+            let expected = 1.0 - solid / (2.0 * TAU);
+            assert!((mean.length() - expected).abs() < 1e-2, "{mean}");
+        }
+        // Too small to be seen.
+        let (_, density) =
+            sample_sphere(Sphere::new(Vec3::Y, 0.0), Vec3::ZERO, Pair::of(Vec2::ZERO));
+        assert!(density.is_finite());
+    }
+}

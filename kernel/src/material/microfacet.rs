@@ -12,7 +12,7 @@
 //!
 //! Directions are in the frame of the surface: z is the normal's, and both directions leave.
 
-use core::f32::consts::{FRAC_1_PI, PI, TAU};
+use core::f32::consts::{FRAC_1_PI, PI};
 
 use glam::{Vec2, Vec3};
 // On the CPU, std has these functions.
@@ -20,6 +20,8 @@ use glam::{Vec2, Vec3};
 use spirv_std::num_traits::Float as _;
 
 use crate::arithmetic::elements::read;
+use crate::arithmetic::turn::turn;
+use crate::path::random::Pair;
 use crate::path::sampling::{cosine_density, uniform_sphere};
 use crate::surface::unit;
 
@@ -82,8 +84,7 @@ pub fn sample_visible(from: Vec3, alpha: f32, u: Vec2) -> Vec3 {
     let stretched = unit(Vec3::new(from.x * alpha, from.y * alpha, from.z));
     let z = (1.0 - u.y) * (1.0 + stretched.z) - stretched.z;
     let sine = (1.0 - z * z).clamp(0.0, 1.0).sqrt();
-    let angle = TAU * u.x;
-    let half = Vec3::new(sine * angle.cos(), sine * angle.sin(), z) + stretched;
+    let half = (turn(u.x) * sine).extend(z) + stretched;
     unit(Vec3::new(half.x * alpha, half.y * alpha, half.z.max(0.0)))
 }
 
@@ -96,7 +97,7 @@ pub(super) fn sample_mixed(chance: f32, from: Vec3, alpha: f32, u: Vec2, choice:
         let normal = sample_visible(from, alpha, u);
         normal * (2.0 * from.dot(normal)) - from
     } else {
-        unit(Vec3::Z + uniform_sphere(u))
+        unit(Vec3::Z + uniform_sphere(Pair::of(u)))
     }
 }
 
@@ -343,6 +344,8 @@ pub use albedo::Albedo;
 
 #[cfg(test)]
 pub(super) mod tests {
+    use core::f32::consts::TAU;
+
     use super::*;
 
     const ALPHAS: [f32; 4] = [0.05, 0.2, 0.5, 1.0];

@@ -12,6 +12,7 @@
 
 use glam::{UVec2, Vec2};
 
+use crate::arithmetic::turn::turn;
 use crate::film::PathLaunch;
 
 /// The random numbers of one sample of one pixel.
@@ -29,6 +30,37 @@ const OF_VERTEX: u32 = 8;
 /// difference of two seeds.
 const SECOND_GROUP: u32 = 0x6a09_e667;
 
+/// Two random numbers from 0 up to, but not including, 1, of which a direction is made.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Pair {
+    /// The numbers.
+    pub u: Vec2,
+    /// The second number as a [turn].
+    pub turn: Vec2,
+}
+
+impl Pair {
+    /// The pair of these numbers.
+    #[inline]
+    #[must_use]
+    pub fn of(u: Vec2) -> Self {
+        Self { u, turn: turn(u.y) }
+    }
+}
+
+/// The random numbers of one vertex of a path. [`VertexNumbers`] computes those that are asked for;
+/// on the CPU the most frequent ones are computed ahead.
+pub trait Numbers {
+    /// For the direction in which the path continues.
+    fn direction(&self) -> Pair;
+    /// For a direction towards a light, and for the choice of a light among few.
+    fn towards_light(&self) -> Pair;
+    /// For Russian roulette.
+    fn roulette(&self) -> f32;
+    /// The numbers that are computed when they are asked for.
+    fn others(&self) -> &VertexNumbers;
+}
+
 /// The random numbers of one vertex of a path. It holds a copy of the
 /// sampler, because SPIR-V has no structs of pointers.
 #[derive(Clone, Copy, Debug)]
@@ -37,21 +69,29 @@ pub struct VertexNumbers {
     first: u32,
 }
 
+impl Numbers for VertexNumbers {
+    #[inline]
+    fn direction(&self) -> Pair {
+        Pair::of(self.sampler.pair(self.first))
+    }
+
+    #[inline]
+    fn towards_light(&self) -> Pair {
+        Pair::of(self.sampler.pair(self.first.wrapping_add(1)))
+    }
+
+    #[inline]
+    fn roulette(&self) -> f32 {
+        self.sampler.single(self.first.wrapping_add(6))
+    }
+
+    #[inline]
+    fn others(&self) -> &VertexNumbers {
+        self
+    }
+}
+
 impl VertexNumbers {
-    /// For the direction in which the path continues.
-    #[inline]
-    #[must_use]
-    pub fn direction(&self) -> Vec2 {
-        self.sampler.pair(self.first)
-    }
-
-    /// For a direction towards a light.
-    #[inline]
-    #[must_use]
-    pub fn towards_light(&self) -> Vec2 {
-        self.sampler.pair(self.first.wrapping_add(1))
-    }
-
     /// For the choice of a light.
     #[inline]
     #[must_use]
@@ -76,8 +116,8 @@ impl VertexNumbers {
     /// For a point of a lamp whose light comes by a sphere.
     #[inline]
     #[must_use]
-    pub fn on_lamp(&self) -> Vec2 {
-        self.sampler.pair(self.first.wrapping_add(5))
+    pub fn on_lamp(&self) -> Pair {
+        Pair::of(self.sampler.pair(self.first.wrapping_add(5)))
     }
 
     /// For the choice of that sphere.
@@ -85,13 +125,6 @@ impl VertexNumbers {
     #[must_use]
     pub fn which_sphere(&self) -> f32 {
         self.sampler.single(self.first.wrapping_add(7))
-    }
-
-    /// For Russian roulette.
-    #[inline]
-    #[must_use]
-    pub fn roulette(&self) -> f32 {
-        self.sampler.single(self.first.wrapping_add(6))
     }
 }
 

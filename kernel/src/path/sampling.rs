@@ -8,6 +8,7 @@ use glam::{Vec2, Vec3};
 #[cfg(target_arch = "spirv")]
 use spirv_std::num_traits::Float as _;
 
+use super::random::Pair;
 use crate::surface::unit;
 
 /// Two unit vectors that form a right-handed basis with the unit vector `normal` (T. Duff et al.,
@@ -31,19 +32,18 @@ pub fn tangents(normal: Vec3) -> (Vec3, Vec3) {
 /// A unit vector, uniform over the sphere.
 #[inline]
 #[must_use]
-pub fn uniform_sphere(u: Vec2) -> Vec3 {
-    let z = 1.0 - 2.0 * u.x;
+pub fn uniform_sphere(pair: Pair) -> Vec3 {
+    let z = 1.0 - 2.0 * pair.u.x;
     let r = (1.0 - z * z).max(0.0).sqrt();
-    let angle = TAU * u.y;
-    Vec3::new(r * angle.cos(), r * angle.sin(), z)
+    (pair.turn * r).extend(z)
 }
 
 /// A unit vector about the unit vector `normal` with the density cos θ / π: a point on the unit
 /// sphere that touches the surface, seen from where it touches.
 #[inline]
 #[must_use]
-pub fn cosine_hemisphere(normal: Vec3, u: Vec2) -> Vec3 {
-    let direction = unit(normal + uniform_sphere(u));
+pub fn cosine_hemisphere(normal: Vec3, pair: Pair) -> Vec3 {
+    let direction = unit(normal + uniform_sphere(pair));
     // Exactly opposite, once in 2²⁴ times or so.
     if direction.dot(normal) > 0.0 {
         direction
@@ -63,12 +63,12 @@ pub fn cosine_density(cosine: f32) -> f32 {
 /// 1 − `height`.
 #[inline]
 #[must_use]
-pub fn cone(axis: Vec3, height: f32, u: Vec2) -> Vec3 {
-    let below = height * u.x;
+pub fn cone(axis: Vec3, height: f32, pair: Pair) -> Vec3 {
+    let below = height * pair.u.x;
     let sine = (below * (2.0 - below)).max(0.0).sqrt();
-    let angle = TAU * u.y;
+    let around = pair.turn * sine;
     let (x, y) = tangents(axis);
-    unit(x * (sine * angle.cos()) + y * (sine * angle.sin()) + axis * (1.0 - below))
+    unit(x * around.x + y * around.y + axis * (1.0 - below))
 }
 
 /// The density of [`cone`], inside of it.
@@ -81,10 +81,8 @@ pub fn cone_density(height: f32) -> f32 {
 /// A point uniform in the unit disc.
 #[inline]
 #[must_use]
-pub fn disc(u: Vec2) -> Vec2 {
-    let r = u.x.sqrt();
-    let angle = TAU * u.y;
-    Vec2::new(r * angle.cos(), r * angle.sin())
+pub fn disc(pair: Pair) -> Vec2 {
+    pair.turn * pair.u.x.sqrt()
 }
 
 /// The weight of a sample of density `own` where another way would have had the density `other`:

@@ -58,7 +58,8 @@ impl<T: Traversal> Scenery<'_, T> {
 
     /// The sphere with this index where it is at `time`.
     #[inline]
-    pub(super) fn sphere(&self, index: usize, time: f32) -> Sphere {
+    #[must_use]
+    pub fn sphere(&self, index: usize, time: f32) -> Sphere {
         self.spheres_at(time, Hit::NONE_SPHERE).read(index)
     }
 

@@ -1,7 +1,7 @@
 //! Samples a light: a lamp chosen at random, or the surroundings of the scene. Runs on the GPU and
 //! on the CPU.
 
-use glam::{Vec2, Vec3};
+use glam::Vec3;
 // On the CPU, std has these functions.
 #[cfg(target_arch = "spirv")]
 use spirv_std::num_traits::Float as _;
@@ -10,7 +10,7 @@ use super::clear::through_glass;
 use super::glass::absorb;
 use super::light_path::Path;
 use super::place::Place;
-use super::random::VertexNumbers;
+use super::random::{Numbers, Pair};
 use super::sampling::{cone, cone_density, power_heuristic};
 use super::scenery::Scenery;
 use super::shadow::Shadow;
@@ -19,8 +19,6 @@ use crate::accel::traversal::Traversal;
 use crate::effects::Effects;
 use crate::hit::Hit;
 use crate::light::{self, Light, tree};
-use crate::precision::intersect;
-use crate::ray::Ray;
 use crate::surface::unit;
 
 /// The ambient light that arrives at the place from `direction`, times `weight`.
@@ -39,7 +37,9 @@ pub(super) fn ambient_light<T: Traversal>(
     } else {
         Vec3::ONE
     };
-    Shadow::new(place, direction, launch.ambient_distance, weight * light)
+    Shadow::towards(place, direction)
+        .up_to(launch.ambient_distance)
+        .carrying(weight * light)
 }
 
 /// The light of one lamp, chosen at random, that the vertex scatters into the path.
@@ -50,13 +50,18 @@ pub(super) fn light_from_seeking<T: Traversal>(
     place: &Place,
     vertex: &Vertex,
     continues: bool,
-    numbers: &VertexNumbers,
+    numbers: &impl Numbers,
 ) -> Shadow {
+    let mut pair = numbers.towards_light();
     let lamp = if scenery.effects.any(Effects::MANY_LIGHTS) {
         let (point, facing) = (place.surface.point, vertex.facing);
-        tree::choose(scenery.lights, point, facing, numbers.which_light())
+        let u = numbers.others().which_light();
+        tree::choose(scenery.lights, point, facing, u)
     } else {
-        light::choose(scenery.lights, numbers.which_light())
+        // What is left of the number is as random: samples are spread over all lamps together.
+        let (lamp, left) = light::choose(scenery.lights, pair.u.x);
+        pair.u.x = left;
+        lamp
     };
     if scenery.effects.any(Effects::AMBIENT_OCCLUSION)
         && (vertex.lobe == LAMBERT) & (lamp.kind == Light::ENVIRONMENT)
@@ -64,32 +69,18 @@ pub(super) fn light_from_seeking<T: Traversal>(
         // The ambient light already contains it.
         return Shadow::NONE;
     }
-    let found = seek(
-        scenery,
-        &lamp,
-        place.surface.point,
-        path.time,
-        numbers.towards_light(),
-    );
+    let found = seek(scenery, &lamp, place.surface.point, path.time, pair);
     let (value, density) = vertex.evaluate(scenery, found.direction);
     let light = value * found.radiance;
     if !((found.density > 0.0) & (light.max_element() > 0.0)) {
         return Shadow::NONE;
     }
     let direction = found.direction;
-    let mut distance = found.distance;
+    let mut shadow = Shadow::towards(place, direction);
     if scenery.effects.any(Effects::SOFT_SHADOWS) && found.is_sphere {
-        // Up to where the sphere itself begins: the interval is half-open.
-        let lamp = scenery.sphere(lamp.sphere as usize, path.time);
-        let origin = place.surface.point;
-        let ray = Ray::within(origin, direction, f32::MIN_POSITIVE, Hit::NONE_T);
-        distance = intersect(scenery.rung, lamp, &ray);
-        if distance >= Hit::NONE_T {
-            // The direction is one in which the sphere is seen, but for rounding, and the ray
-            // passes it by: up to where the sphere is nearest.
-            let towards = lamp.center() - origin;
-            distance = towards.length() - lamp.radius().abs();
-        }
+        shadow.lamp = lamp.sphere;
+    } else {
+        shadow = shadow.up_to(found.distance);
     }
     let mut weight = 1.0;
     if continues & !found.is_delta {
@@ -97,18 +88,26 @@ pub(super) fn light_from_seeking<T: Traversal>(
     }
     weight *= path.outside_of_glass(scenery);
     if scenery.effects.any(Effects::CLEAR_SHADOWS) & found.is_delta {
-        let share = through_glass(scenery, path, place, direction, distance);
+        let share = through_glass(scenery, path, place, direction, found.distance);
         return Shadow::certain(path.throughput * (light * share * (weight / found.density)));
     }
-    if path.is_in_fog(scenery.effects) {
+    let (is_in_fog, is_in_glass) = (
+        path.is_in_fog(scenery.effects),
+        path.is_in_glass(scenery.effects),
+    );
+    // The CPU finds later how far away lamps are, of many rays side by side.
+    if cfg!(target_arch = "spirv") || (is_in_fog | is_in_glass) {
+        shadow = shadow.up_to_lamp(scenery, path.time);
+    }
+    if is_in_fog {
         let fog = &scenery.launch.fog;
-        weight *= fog.transmittance(place.surface.point, direction, distance);
+        weight *= fog.transmittance(place.surface.point, direction, shadow.ray.t_max);
     }
     let mut light = light * (weight / found.density);
-    if scenery.effects.any(Effects::GLASS) && distance < Hit::NONE_T {
-        light *= absorb(path.medium(scenery).absorption, distance);
+    if is_in_glass && shadow.ray.t_max < Hit::NONE_T {
+        light *= absorb(path.medium(scenery).absorption, shadow.ray.t_max);
     }
-    Shadow::new(place, direction, distance, path.throughput * light)
+    shadow.carrying(path.throughput * light)
 }
 
 /// A sample of a light, seen from a point.
@@ -130,7 +129,7 @@ fn seek<T: Traversal>(
     lamp: &Light,
     point: Vec3,
     time: f32,
-    u: Vec2,
+    pair: Pair,
 ) -> Found {
     let (effects, launch) = (scenery.effects, scenery.launch);
     let mut found = Found {
@@ -146,18 +145,18 @@ fn seek<T: Traversal>(
         && (lamp.sphere as usize) < scenery.spheres.len()
     {
         let sphere = scenery.sphere(lamp.sphere as usize, time);
-        let (direction, density) = light::sample_sphere(sphere, point, u);
+        let (direction, density) = light::sample_sphere(sphere, point, pair);
         found.direction = direction;
         found.density *= density;
         found.is_delta = false;
         found.is_sphere = true;
     } else if effects.any(Effects::SOFT_SHADOWS) && lamp.kind == Light::SUN && lamp.height > 0.0 {
-        found.direction = cone(lamp.position, lamp.height, u);
+        found.direction = cone(lamp.position, lamp.height, pair);
         found.density *= cone_density(lamp.height);
         found.is_delta = false;
     } else if effects.any(Effects::ENVIRONMENT) && lamp.kind == Light::ENVIRONMENT {
         let (tables, texels) = (scenery.tables, scenery.texels);
-        let (direction, density, radiance) = launch.sky.sample_environment(u, tables, texels);
+        let (direction, density, radiance) = launch.sky.sample_environment(pair.u, tables, texels);
         found.direction = direction;
         found.radiance = radiance;
         found.density *= density;

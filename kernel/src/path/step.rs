@@ -14,7 +14,7 @@ use super::glass::{absorb, cross_glass, passes_covered_glass};
 use super::light_path::{Path, survives};
 use super::media::{Media, Medium};
 use super::place::Place;
-use super::random::{Sampler, VertexNumbers};
+use super::random::{Numbers, Pair, Sampler};
 use super::sampling::{cosine_hemisphere, disc};
 use super::scenery::Scenery;
 use super::seek::{ambient_light, light_from_seeking};
@@ -53,7 +53,8 @@ pub fn trace_pixel<T: Traversal>(
         let spheres = scenery.spheres_at(path.time, path.left);
         let hit = scenery.traversal.nearest_hit(&path.ray(), &spheres);
         let hit = path.or_exit(hit);
-        if !shade(scenery, &mut path, &sampler, hit, receive_at_once) {
+        let numbers = sampler.at_vertex(path.bounces());
+        if !shade(scenery, &mut path, &numbers, hit, receive_at_once) {
             path.end(scenery, sample, &mut accumulator);
             sample += 1;
             sampler = Sampler::of(scenery.launch, pixel, sample);
@@ -117,7 +118,7 @@ pub fn start<T: Traversal>(scenery: &Scenery<'_, T>, pixel: UVec2, sampler: &Sam
     }
     if effects.any(Effects::DEFOCUS) {
         let in_focus = origin + direction * launch.focus_distance;
-        let on_lens = disc(sampler.pair(1)) * launch.lens_radius;
+        let on_lens = disc(Pair::of(sampler.pair(1))) * launch.lens_radius;
         origin += unit(camera.right) * on_lens.x + unit(camera.up) * on_lens.y;
         direction = in_focus - origin;
     }
@@ -164,6 +165,12 @@ const PASSES: u32 = u32::MAX - 2;
 /// Traces a shadow ray and lets the path receive its light.
 #[inline]
 fn receive_at_once<T: Traversal>(scenery: &Scenery<'_, T>, path: &mut Path, shadow: Shadow) {
+    // On a GPU it ends there already.
+    let shadow = if cfg!(target_arch = "spirv") {
+        shadow
+    } else {
+        shadow.up_to_lamp(scenery, path.time)
+    };
     let spheres = scenery.spheres_at(path.time, shadow.left);
     if shadow.is_some() && !scenery.traversal.is_occluded(&shadow.ray, &spheres) {
         path.receive(scenery.effects, shadow.light, shadow.scatterings);
@@ -179,20 +186,19 @@ fn receive_at_once<T: Traversal>(scenery: &Scenery<'_, T>, path: &mut Path, shad
 pub fn shade<T: Traversal>(
     scenery: &Scenery<'_, T>,
     path: &mut Path,
-    sampler: &Sampler,
+    numbers: &impl Numbers,
     hit: Hit,
     receive: impl Fn(&Scenery<'_, T>, &mut Path, Shadow) + Copy,
 ) -> bool {
     let effects = scenery.effects;
-    let numbers = sampler.at_vertex(path.bounces());
     let ray = path.ray();
     let continues = effects.any(Effects::BOUNCING) & (path.bounces() <= scenery.most_bounces());
 
     let mut place = Place::none();
     let is_in_fog =
-        path.is_in_fog(effects) && meet_fog(scenery, path, &ray, hit, numbers.way(), &mut place);
+        path.is_in_fog(effects) && meet_fog(scenery, path, &ray, hit, numbers, &mut place);
     let event = if !is_in_fog {
-        meet_surface(scenery, path, &ray, hit, continues, &numbers, &mut place)
+        meet_surface(scenery, path, &ray, hit, continues, numbers, &mut place)
     } else if continues {
         PHASE
     } else {
@@ -204,25 +210,25 @@ pub fn shade<T: Traversal>(
     if event == PASSES {
         return true;
     }
-    if event != LEAVES && !scatter(scenery, path, &place, event, continues, &numbers, receive) {
+    if event != LEAVES && !scatter(scenery, path, &place, event, continues, numbers, receive) {
         return false;
     }
     survives(path, numbers.roulette())
 }
 
-/// Stops a path in the fog, by chance: `u` decides how far it gets. Returns whether it stops.
+/// Stops a path in the fog, by chance. Returns whether it stops.
 #[inline]
 fn meet_fog<T: Traversal>(
     scenery: &Scenery<'_, T>,
     path: &mut Path,
     ray: &Ray,
     hit: Hit,
-    u: f32,
+    numbers: &impl Numbers,
     place: &mut Place,
 ) -> bool {
     let fog = &scenery.launch.fog;
     let (from, to) = fog.span(path.origin, path.direction, hit.t);
-    let at = from + fog.sample_distance(u);
+    let at = from + fog.sample_distance(numbers.others().way());
     let is_in_fog = (from < to) & (at < to);
     if is_in_fog {
         place.surface.point = ray.at(at);
@@ -240,7 +246,7 @@ fn meet_surface<T: Traversal>(
     ray: &Ray,
     hit: Hit,
     continues: bool,
-    numbers: &VertexNumbers,
+    numbers: &impl Numbers,
     place: &mut Place,
 ) -> u32 {
     let effects = scenery.effects;
@@ -277,7 +283,7 @@ fn meet_surface<T: Traversal>(
             }
         }
         if continues {
-            cross_glass(scenery, path, place, beyond, numbers.choice());
+            cross_glass(scenery, path, place, beyond, numbers.others().choice());
             return LEAVES;
         }
         return ENDS;
@@ -317,7 +323,7 @@ fn scatter<T: Traversal>(
     place: &Place,
     lobe: u32,
     continues: bool,
-    numbers: &VertexNumbers,
+    numbers: &impl Numbers,
     receive: impl Fn(&Scenery<'_, T>, &mut Path, Shadow) + Copy,
 ) -> bool {
     let effects = scenery.effects;
@@ -367,7 +373,7 @@ fn scatter<T: Traversal>(
     if !continues {
         return false;
     }
-    let direction = vertex.sample(scenery, numbers.direction(), numbers.choice());
+    let direction = vertex.sample(scenery, numbers);
     let (value, density) = vertex.evaluate(scenery, direction);
     // Written so that a NaN ends the path.
     let is_possible = density > 0.0;

@@ -1,7 +1,8 @@
 //! Scattering by a diffuse surface, rough metal, plastic or fog. Runs on the GPU and on the CPU.
 
-use glam::{Vec2, Vec3};
+use glam::Vec3;
 
+use super::random::Numbers;
 use super::sampling::{cosine_density, cosine_hemisphere, tangents};
 use super::scenery::Scenery;
 use crate::accel::traversal::Traversal;
@@ -43,7 +44,16 @@ impl Vertex {
         facing: Vec3,
         material: &Material,
     ) -> Self {
-        let (x, y) = tangents(facing);
+        // Of lobes that are given in the frame of the surface.
+        let has_frame = scenery
+            .effects
+            .any(Effects::ROUGH_METAL.and(Effects::PLASTIC))
+            && (cfg!(target_arch = "spirv") || (lobe == METAL) | (lobe == PLASTIC));
+        let (x, y) = if has_frame {
+            tangents(facing)
+        } else {
+            (Vec3::ZERO, Vec3::ZERO)
+        };
         let from = -Vec3::new(x.dot(incoming), y.dot(incoming), facing.dot(incoming));
         let (color, alpha, tables) = (material.color, material.parameter, scenery.tables);
         // A GPU's threads would wait for those whose vertex is of metal.
@@ -70,7 +80,8 @@ impl Vertex {
 
     /// The share of light that is scattered from `to` into the path, times the cosine at a surface;
     /// and the density with which [`Vertex::sample`] chooses `to`.
-    #[inline]
+    #[cfg_attr(target_arch = "spirv", inline)]
+    #[cfg_attr(not(target_arch = "spirv"), inline(always))]
     pub(super) fn evaluate<T: Traversal>(&self, scenery: &Scenery<'_, T>, to: Vec3) -> (Vec3, f32) {
         let effects = scenery.effects;
         if effects.any(Effects::FOG) && self.lobe == PHASE {
@@ -91,18 +102,26 @@ impl Vertex {
     pub(super) fn sample<T: Traversal>(
         &self,
         scenery: &Scenery<'_, T>,
-        u: Vec2,
-        choice: f32,
+        numbers: &impl Numbers,
     ) -> Vec3 {
         let effects = scenery.effects;
         if effects.any(Effects::FOG) && self.lobe == PHASE {
-            scenery.launch.fog.sample(self.incoming, u)
+            scenery
+                .launch
+                .fog
+                .sample(self.incoming, numbers.direction())
         } else if effects.any(Effects::ROUGH_METAL) && self.lobe == METAL {
-            self.global(self.metal.sample(u, choice))
+            self.global(
+                self.metal
+                    .sample(numbers.direction().u, numbers.others().choice()),
+            )
         } else if effects.any(Effects::PLASTIC) && self.lobe == PLASTIC {
-            self.global(self.plastic.sample(u, choice))
+            self.global(
+                self.plastic
+                    .sample(numbers.direction().u, numbers.others().choice()),
+            )
         } else {
-            cosine_hemisphere(self.facing, u)
+            cosine_hemisphere(self.facing, numbers.direction())
         }
     }
 

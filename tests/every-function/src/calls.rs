@@ -1622,6 +1622,9 @@ pub const CALLS: &[Call] = &[
     Call::new("spherule_kernel::arithmetic::strict::sub", |s| {
         seen(spherule_kernel::arithmetic::strict::sub(s.draw(), s.draw()))
     }),
+    Call::new("spherule_kernel::arithmetic::turn::turn", |s| {
+        seen(spherule_kernel::arithmetic::turn::turn(s.draw()))
+    }),
     Call::new("spherule_kernel::camera::Camera::film", |s| {
         seen(spherule_kernel::camera::Camera::film(s.draw(), s.draw()))
     }),
@@ -2385,6 +2388,9 @@ pub const CALLS: &[Call] = &[
             s.draw(),
         ))
     }),
+    Call::new("spherule_kernel::path::light_path::Path::bounces", |s| {
+        seen(spherule_kernel::path::Path::bounces(&s.draw()))
+    }),
     Call::new("spherule_kernel::path::light_path::Path::end", |s| {
         seen(spherule_kernel::path::Path::end(
             &s.draw(),
@@ -2412,6 +2418,9 @@ pub const CALLS: &[Call] = &[
     }),
     Call::new("spherule_kernel::path::light_path::Path::time", |s| {
         seen(spherule_kernel::path::Path::time(&s.draw()))
+    }),
+    Call::new("spherule_kernel::path::random::Pair::of", |s| {
+        seen(spherule_kernel::path::random::Pair::of(s.draw()))
     }),
     Call::new("spherule_kernel::path::random::Sampler::at_vertex", |s| {
         seen(spherule_kernel::path::random::Sampler::at_vertex(
@@ -2454,6 +2463,30 @@ pub const CALLS: &[Call] = &[
         ))
     }),
     Call::new(
+        "spherule_kernel::path::random::VertexNumbers as spherule_kernel::path::random::Numbers::direction",
+        |s| {
+            seen(<spherule_kernel::path::random::VertexNumbers as spherule_kernel::path::random::Numbers>::direction(&s.draw()))
+        },
+    ),
+    Call::new(
+        "spherule_kernel::path::random::VertexNumbers as spherule_kernel::path::random::Numbers::others",
+        |s| {
+            seen(<spherule_kernel::path::random::VertexNumbers as spherule_kernel::path::random::Numbers>::others(&s.draw()))
+        },
+    ),
+    Call::new(
+        "spherule_kernel::path::random::VertexNumbers as spherule_kernel::path::random::Numbers::roulette",
+        |s| {
+            seen(<spherule_kernel::path::random::VertexNumbers as spherule_kernel::path::random::Numbers>::roulette(&s.draw()))
+        },
+    ),
+    Call::new(
+        "spherule_kernel::path::random::VertexNumbers as spherule_kernel::path::random::Numbers::towards_light",
+        |s| {
+            seen(<spherule_kernel::path::random::VertexNumbers as spherule_kernel::path::random::Numbers>::towards_light(&s.draw()))
+        },
+    ),
+    Call::new(
         "spherule_kernel::path::random::VertexNumbers::choice",
         |s| {
             seen(spherule_kernel::path::random::VertexNumbers::choice(
@@ -2462,33 +2495,9 @@ pub const CALLS: &[Call] = &[
         },
     ),
     Call::new(
-        "spherule_kernel::path::random::VertexNumbers::direction",
-        |s| {
-            seen(spherule_kernel::path::random::VertexNumbers::direction(
-                &s.draw(),
-            ))
-        },
-    ),
-    Call::new(
         "spherule_kernel::path::random::VertexNumbers::on_lamp",
         |s| {
             seen(spherule_kernel::path::random::VertexNumbers::on_lamp(
-                &s.draw(),
-            ))
-        },
-    ),
-    Call::new(
-        "spherule_kernel::path::random::VertexNumbers::roulette",
-        |s| {
-            seen(spherule_kernel::path::random::VertexNumbers::roulette(
-                &s.draw(),
-            ))
-        },
-    ),
-    Call::new(
-        "spherule_kernel::path::random::VertexNumbers::towards_light",
-        |s| {
-            seen(spherule_kernel::path::random::VertexNumbers::towards_light(
                 &s.draw(),
             ))
         },
@@ -2546,6 +2555,13 @@ pub const CALLS: &[Call] = &[
     Call::new("spherule_kernel::path::sampling::uniform_sphere", |s| {
         seen(spherule_kernel::path::sampling::uniform_sphere(s.draw()))
     }),
+    Call::new("spherule_kernel::path::scenery::Scenery::sphere", |s| {
+        seen(spherule_kernel::path::Scenery::sphere(
+            &s.draw::<odd::OddScenery>().get(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
     Call::new("spherule_kernel::path::scenery::Scenery::spheres_at", |s| {
         seen(spherule_kernel::path::Scenery::spheres_at(
             &s.draw::<odd::OddScenery>().get(),
@@ -2553,8 +2569,21 @@ pub const CALLS: &[Call] = &[
             s.draw(),
         ))
     }),
+    Call::new("spherule_kernel::path::shadow::Shadow::distance", |s| {
+        seen(spherule_kernel::path::Shadow::distance(
+            &s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
     Call::new("spherule_kernel::path::shadow::Shadow::is_some", |s| {
         seen(spherule_kernel::path::Shadow::is_some(&s.draw()))
+    }),
+    Call::new("spherule_kernel::path::shadow::Shadow::up_to", |s| {
+        seen(spherule_kernel::path::Shadow::up_to(s.draw(), s.draw()))
+    }),
+    Call::new("spherule_kernel::path::shadow::Shadow::whole_ray", |s| {
+        seen(spherule_kernel::path::Shadow::whole_ray(&s.draw()))
     }),
     Call::new("spherule_kernel::path::step::Samples::of", |s| {
         seen(spherule_kernel::path::Samples::of(
@@ -3663,6 +3692,7 @@ impl Odd for spherule_kernel::path::Shadow {
         spherule_kernel::path::Shadow {
             ray: Odd::odd(s),
             left: Odd::odd(s),
+            lamp: Odd::odd(s),
             light: Odd::odd(s),
             scatterings: Odd::odd(s),
         }
@@ -3686,6 +3716,15 @@ impl Odd for spherule_kernel::path::caustic::ways::Caster {
             radius: Odd::odd(s),
             hollow: Odd::odd(s),
             index: Odd::odd(s),
+        }
+    }
+}
+
+impl Odd for spherule_kernel::path::random::Pair {
+    fn odd(s: &mut Source) -> Self {
+        spherule_kernel::path::random::Pair {
+            u: Odd::odd(s),
+            turn: Odd::odd(s),
         }
     }
 }

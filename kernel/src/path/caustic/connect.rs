@@ -19,7 +19,7 @@ use crate::material::{Material, material_of};
 use crate::path::glass::absorb;
 use crate::path::light_path::Path;
 use crate::path::place::Place;
-use crate::path::random::VertexNumbers;
+use crate::path::random::{Numbers, Pair};
 use crate::path::sampling::{cone, cone_density, power_heuristic};
 use crate::path::scenery::Scenery;
 use crate::path::vertex::Vertex;
@@ -92,10 +92,10 @@ pub(in crate::path) fn light_by_sphere<T: Traversal>(
     path: &Path,
     place: &Place,
     vertex: &Vertex,
-    numbers: &VertexNumbers,
+    numbers: &impl Numbers,
 ) -> Vec3 {
     let mut light = Vec3::ZERO;
-    let (first, u) = (scenery.launch.first_caster, numbers.which_sphere());
+    let (first, u) = (scenery.launch.first_caster, numbers.others().which_sphere());
     let entry = Entry::choose(scenery.tables, first, u);
     let ball = scenery.sphere(entry.sphere as usize, path.time);
     let end = choose_end(scenery, path.time, ball, numbers);
@@ -186,11 +186,11 @@ fn choose_end<T: Traversal>(
     scenery: &Scenery<'_, T>,
     time: f32,
     ball: Sphere,
-    numbers: &VertexNumbers,
+    numbers: &impl Numbers,
 ) -> End {
     let effects = scenery.effects;
-    let lamp = light::choose(scenery.lights, numbers.which_light());
-    let u: Vec2 = numbers.on_lamp();
+    let (lamp, _) = light::choose(scenery.lights, numbers.others().which_light());
+    let pair = numbers.others().on_lamp();
     let mut end = End {
         at: lamp.position,
         normal: Vec3::ZERO,
@@ -208,7 +208,10 @@ fn choose_end<T: Traversal>(
         let sphere = scenery.sphere(lamp.sphere as usize, time);
         let height = light::cap_height(sphere, ball);
         // Linear in the cosine: the density of what is nearer to the middle is a square.
-        let within = Vec2::new(1.0 - (1.0 - u.x).sqrt(), u.y);
+        let within = Pair {
+            u: Vec2::new(1.0 - (1.0 - pair.u.x).sqrt(), pair.u.y),
+            turn: pair.turn,
+        };
         end.normal = cone(
             unit(ball.center() - sphere.center()),
             height.max(0.0),
@@ -224,7 +227,7 @@ fn choose_end<T: Traversal>(
         end.is_delta = false;
         end.is_sphere = true;
     } else if effects.any(Effects::SOFT_SHADOWS) && end.is_sun && lamp.height > 0.0 {
-        end.at = cone(lamp.position, lamp.height, u);
+        end.at = cone(lamp.position, lamp.height, pair);
         end.density *= cone_density(lamp.height);
         end.is_delta = false;
     } else if !effects.any(Effects::HARD_SHADOWS) | !(end.is_sun | (lamp.kind == Light::POINT)) {
