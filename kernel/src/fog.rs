@@ -12,8 +12,7 @@ use glam::{UVec2, Vec3};
 #[cfg(target_arch = "spirv")]
 use spirv_std::num_traits::Float as _;
 
-use crate::path::random::Pair;
-use crate::path::sampling::{tangents, uniform_sphere};
+use crate::path::sampling::{Pair, tangents, uniform_sphere};
 use crate::surface::unit;
 
 /// A ball of fog.

@@ -4,7 +4,8 @@
 
 use fearless_simd::{Level, dispatch};
 use glam::Vec2;
-use spherule_kernel::path::random::{Numbers, Pair, VertexNumbers};
+use spherule_kernel::path::random::{Numbers, VertexNumbers};
+use spherule_kernel::path::sampling::Pair;
 
 use crate::lanes::LANES;
 

@@ -15,8 +15,7 @@ use glam::Vec3;
 use spirv_std::num_traits::Float as _;
 
 use crate::arithmetic::elements::read;
-use crate::path::random::Pair;
-use crate::path::sampling::{cone, cone_density};
+use crate::path::sampling::{Pair, cone, cone_density};
 use crate::sphere::Sphere;
 
 /// A light that is sampled. One is chosen at a time, by its probability. In a [tree] of

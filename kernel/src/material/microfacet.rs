@@ -21,8 +21,7 @@ use spirv_std::num_traits::Float as _;
 
 use crate::arithmetic::elements::read;
 use crate::arithmetic::turn::turn;
-use crate::path::random::Pair;
-use crate::path::sampling::{cosine_density, uniform_sphere};
+use crate::path::sampling::{Pair, cosine_density, uniform_sphere};
 use crate::surface::unit;
 
 /// Below this α a metal is a mirror: the distribution's peak would leave the range of floats.

@@ -12,7 +12,7 @@
 
 use glam::{UVec2, Vec2};
 
-use crate::arithmetic::turn::turn;
+use super::sampling::Pair;
 use crate::film::PathLaunch;
 
 /// The random numbers of one sample of one pixel.
@@ -29,24 +29,6 @@ const OF_VERTEX: u32 = 8;
 /// What changes the seed for the second of two groups: a number that no one takes for the
 /// difference of two seeds.
 const SECOND_GROUP: u32 = 0x6a09_e667;
-
-/// Two random numbers from 0 up to, but not including, 1, of which a direction is made.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Pair {
-    /// The numbers.
-    pub u: Vec2,
-    /// The second number as a [turn].
-    pub turn: Vec2,
-}
-
-impl Pair {
-    /// The pair of these numbers.
-    #[inline]
-    #[must_use]
-    pub fn of(u: Vec2) -> Self {
-        Self { u, turn: turn(u.y) }
-    }
-}
 
 /// The random numbers of one vertex of a path. [`VertexNumbers`] computes those that are asked for;
 /// on the CPU the most frequent ones are computed ahead.

@@ -8,8 +8,26 @@ use glam::{Vec2, Vec3};
 #[cfg(target_arch = "spirv")]
 use spirv_std::num_traits::Float as _;
 
-use super::random::Pair;
+use crate::arithmetic::turn::turn;
 use crate::surface::unit;
+
+/// Two random numbers from 0 up to, but not including, 1, of which a direction is made.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Pair {
+    /// The numbers.
+    pub u: Vec2,
+    /// The second number as a [turn].
+    pub turn: Vec2,
+}
+
+impl Pair {
+    /// The pair of these numbers.
+    #[inline]
+    #[must_use]
+    pub fn of(u: Vec2) -> Self {
+        Self { u, turn: turn(u.y) }
+    }
+}
 
 /// Two unit vectors that form a right-handed basis with the unit vector `normal` (T. Duff et al.,
 /// Building an Orthonormal Basis, Revisited, J. Comput. Graph. Tech. 6 (2017)).

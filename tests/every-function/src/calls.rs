@@ -2419,9 +2419,6 @@ pub const CALLS: &[Call] = &[
     Call::new("spherule_kernel::path::light_path::Path::time", |s| {
         seen(spherule_kernel::path::Path::time(&s.draw()))
     }),
-    Call::new("spherule_kernel::path::random::Pair::of", |s| {
-        seen(spherule_kernel::path::random::Pair::of(s.draw()))
-    }),
     Call::new("spherule_kernel::path::random::Sampler::at_vertex", |s| {
         seen(spherule_kernel::path::random::Sampler::at_vertex(
             &s.draw(),
@@ -2521,6 +2518,9 @@ pub const CALLS: &[Call] = &[
             ))
         },
     ),
+    Call::new("spherule_kernel::path::sampling::Pair::of", |s| {
+        seen(spherule_kernel::path::sampling::Pair::of(s.draw()))
+    }),
     Call::new("spherule_kernel::path::sampling::cone", |s| {
         seen(spherule_kernel::path::sampling::cone(
             s.draw(),
@@ -3720,9 +3720,9 @@ impl Odd for spherule_kernel::path::caustic::ways::Caster {
     }
 }
 
-impl Odd for spherule_kernel::path::random::Pair {
+impl Odd for spherule_kernel::path::sampling::Pair {
     fn odd(s: &mut Source) -> Self {
-        spherule_kernel::path::random::Pair {
+        spherule_kernel::path::sampling::Pair {
             u: Odd::odd(s),
             turn: Odd::odd(s),
         }
