@@ -8,6 +8,7 @@ use std::collections::{BTreeMap, HashSet};
 
 use spherule::device::Module;
 use spherule::kernel::{probe::layout, spirv};
+use spherule_kernel::{Effects, Rung};
 
 #[cfg(feature = "compile-kernel")]
 #[test]
@@ -281,4 +282,88 @@ fn a_module_reduced_to_one_entry_point_has_only_what_that_needs() {
     }
     let module = Module::from_bytes("committed", spirv::F32).expect("a module");
     assert_eq!(module.only("none").words(), module.words());
+}
+
+/// A module whose constants are folded is a valid module without specialisation constants, and
+/// holds a fraction of the code.
+#[test]
+fn a_folded_module_has_only_what_its_constants_ask_for() {
+    const SPEC_CONSTANT: u32 = 50;
+    let sets = [
+        Effects::NONE,
+        Effects::ANTIALIASING.and(Effects::HEADLAMP),
+        Effects::ANTIALIASING
+            .and(Effects::SOFT_SHADOWS)
+            .and(Effects::EMISSION)
+            .and(Effects::INTERREFLECTION),
+        Effects::GLASS.and(Effects::NESTED_GLASS).and(Effects::FOG),
+        Effects::CAUSTICS
+            .and(Effects::GLASS)
+            .and(Effects::SOFT_SHADOWS)
+            .and(Effects::MANY_LIGHTS),
+        Effects::ALL,
+    ];
+    for (bytes, is_f32) in [(spirv::F32, true), (spirv::F64, false)] {
+        let module = Module::from_bytes("committed", bytes).expect("a module");
+        for entry in module.entry_points() {
+            let has_effects = entry.name == "trace_paths";
+            for set in &sets[..if has_effects { sets.len() } else { 1 }] {
+                for rung in Rung::ALL {
+                    if is_f32 && rung == Rung::Double {
+                        continue;
+                    }
+                    let constants = [
+                        (Rung::SPEC_ID, rung.to_u32()),
+                        (Effects::SPEC_ID, set.to_bits()),
+                        (Effects::IS_EXACT_SPEC_ID, 1),
+                    ];
+                    let special = constants
+                        .into_iter()
+                        .fold(module.clone(), |module, (id, to)| {
+                            module.specialise(id, to).expect("it has this constant")
+                        });
+                    let only = special.only(&entry.name);
+                    let folded = only.folded();
+                    let what = format!("{}, {rung:?}, {:#x}", entry.name, set.to_bits());
+                    let bytes = bytemuck::cast_slice(folded.words());
+                    let again = Module::from_bytes("folded", bytes).expect("a module");
+                    assert_eq!(again.entry_points(), std::slice::from_ref(entry), "{what}");
+                    assert!(folded.words().len() <= only.words().len(), "{what}");
+                    if has_effects && *set != Effects::ALL {
+                        let share = folded.words().len() as f32 / only.words().len() as f32;
+                        assert!(share < 0.4, "{what}: {share} of the words are left");
+                    }
+                    assert!(count(&only, SPEC_CONSTANT) > 0, "{what}");
+                    assert_eq!(count(&folded, SPEC_CONSTANT), 0, "{what}");
+                    assert!(
+                        folded.clone().specialise(Rung::SPEC_ID, 0).is_err(),
+                        "{what}"
+                    );
+                    if is_f32 {
+                        let naga = wgpu::naga::front::spv::parse_u8_slice(
+                            bytes,
+                            &wgpu::naga::front::spv::Options::default(),
+                        )
+                        .unwrap_or_else(|error| panic!("{what}: {error}"));
+                        wgpu::naga::valid::Validator::new(
+                            wgpu::naga::valid::ValidationFlags::all(),
+                            wgpu::naga::valid::Capabilities::all(),
+                        )
+                        .validate(&naga)
+                        .unwrap_or_else(|error| panic!("{what}: {error}"));
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// How many instructions of a kind a module has.
+fn count(module: &Module, opcode: u32) -> usize {
+    let (words, mut at, mut found) = (module.words(), 5, 0);
+    while at < words.len() {
+        found += usize::from(words[at] & 0xffff == opcode);
+        at += (words[at] >> 16) as usize;
+    }
+    found
 }

@@ -263,7 +263,7 @@ impl Gpu {
             let only = module.only(entry_point);
             check_bindings(&only, bindings)
                 .map_err(|reason| invalid(module, entry_point, reason))?;
-            self.compile(&only, entry_point, bindings)?
+            self.compile(&only.folded(), entry_point, bindings)?
         } else {
             self.compile(module, entry_point, bindings)?
         };

@@ -4,6 +4,8 @@
 //! through. So the structure is checked here: the header, the length of each instruction, and what
 //! the host relies on (entry points, workgroup sizes, specialisation constants).
 
+mod fold;
+
 use std::collections::{HashMap, HashSet};
 use std::fmt;
 
@@ -15,26 +17,66 @@ const HEADER_WORDS: usize = 5;
 
 /// Opcodes, storage classes and decorations from the SPIR-V specification.
 mod op {
+    pub(super) const NOP: u32 = 0;
+    pub(super) const UNDEF: u32 = 1;
     pub(super) const NAME: u32 = 5;
+    pub(super) const LINE: u32 = 8;
+    pub(super) const EXT_INST: u32 = 12;
     pub(super) const ENTRY_POINT: u32 = 15;
     pub(super) const EXECUTION_MODE: u32 = 16;
     pub(super) const CAPABILITY: u32 = 17;
+    pub(super) const TYPE_BOOL: u32 = 20;
+    pub(super) const TYPE_INT: u32 = 21;
+    pub(super) const CONSTANT_TRUE: u32 = 41;
+    pub(super) const CONSTANT_FALSE: u32 = 42;
+    pub(super) const CONSTANT: u32 = 43;
+    pub(super) const SPEC_CONSTANT_TRUE: u32 = 48;
+    pub(super) const SPEC_CONSTANT_FALSE: u32 = 49;
     pub(super) const SPEC_CONSTANT: u32 = 50;
     pub(super) const FUNCTION: u32 = 54;
     pub(super) const FUNCTION_END: u32 = 56;
     pub(super) const FUNCTION_CALL: u32 = 57;
     pub(super) const VARIABLE: u32 = 59;
+    pub(super) const LOAD: u32 = 61;
     pub(super) const STORE: u32 = 62;
     pub(super) const COPY_MEMORY: u32 = 63;
+    pub(super) const ACCESS_CHAIN: u32 = 65;
+    pub(super) const IN_BOUNDS_ACCESS_CHAIN: u32 = 66;
+    pub(super) const ARRAY_LENGTH: u32 = 68;
     pub(super) const DECORATE: u32 = 71;
+    pub(super) const I_ADD: u32 = 128;
+    pub(super) const I_SUB: u32 = 130;
+    pub(super) const I_MUL: u32 = 132;
+    pub(super) const LOGICAL_EQUAL: u32 = 164;
+    pub(super) const LOGICAL_NOT_EQUAL: u32 = 165;
+    pub(super) const LOGICAL_OR: u32 = 166;
+    pub(super) const LOGICAL_AND: u32 = 167;
+    pub(super) const LOGICAL_NOT: u32 = 168;
+    pub(super) const SELECT: u32 = 169;
+    pub(super) const I_EQUAL: u32 = 170;
+    pub(super) const I_NOT_EQUAL: u32 = 171;
+    pub(super) const U_GREATER_THAN: u32 = 172;
+    pub(super) const U_GREATER_THAN_EQUAL: u32 = 174;
+    pub(super) const U_LESS_THAN: u32 = 176;
+    pub(super) const U_LESS_THAN_EQUAL: u32 = 178;
+    pub(super) const SHIFT_RIGHT_LOGICAL: u32 = 194;
+    pub(super) const SHIFT_LEFT_LOGICAL: u32 = 196;
+    pub(super) const BITWISE_OR: u32 = 197;
+    pub(super) const BITWISE_XOR: u32 = 198;
+    pub(super) const BITWISE_AND: u32 = 199;
+    pub(super) const NOT: u32 = 200;
     pub(super) const CONTROL_BARRIER: u32 = 224;
     pub(super) const MEMORY_BARRIER: u32 = 225;
     pub(super) const ATOMIC_STORE: u32 = 228;
+    pub(super) const PHI: u32 = 245;
     pub(super) const LOOP_MERGE: u32 = 246;
     pub(super) const SELECTION_MERGE: u32 = 247;
     pub(super) const LABEL: u32 = 248;
     pub(super) const BRANCH: u32 = 249;
+    pub(super) const BRANCH_CONDITIONAL: u32 = 250;
+    pub(super) const SWITCH: u32 = 251;
     pub(super) const UNREACHABLE: u32 = 255;
+    pub(super) const NO_LINE: u32 = 317;
     pub(super) const DECORATION_SPEC_ID: u32 = 1;
     pub(super) const DECORATION_NON_WRITABLE: u32 = 24;
     pub(super) const DECORATION_BINDING: u32 = 33;
@@ -353,6 +395,17 @@ impl Module {
         only.words = words;
         only.entry_points.retain(|entry| entry.name == entry_point);
         only
+    }
+
+    /// The module with its specialisation constants fixed, without the code that their values rule
+    /// out: what a driver has to read is a tenth as long.
+    ///
+    /// Only for modules that rust-gpu made, as [`Module::only`].
+    #[must_use]
+    pub fn folded(&self) -> Self {
+        let mut folded = self.clone();
+        folded.words = fold::fold(&self.words);
+        folded
     }
 }
 

@@ -658,6 +658,9 @@ pub const CALLS: &[Call] = &[
     Call::new("spherule::device::spirv::Module::entry_points", |s| {
         seen(spherule::device::spirv::Module::entry_points(&s.draw()))
     }),
+    Call::new("spherule::device::spirv::Module::folded", |s| {
+        seen(spherule::device::spirv::Module::folded(&s.draw()))
+    }),
     Call::new("spherule::device::spirv::Module::from_bytes", |s| {
         seen(spherule::device::spirv::Module::from_bytes(
             &s.text(),
