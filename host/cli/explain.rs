@@ -16,7 +16,6 @@ use super::{load, note, write_json};
 use crate::choose::DEFAULT_TOLERANCE;
 use crate::device::Device;
 use crate::error::Result;
-use crate::kernel_module;
 use crate::plural::count_of;
 use crate::render::EffectChoice;
 use crate::render::Settings;
@@ -46,8 +45,6 @@ struct ExplainReport {
     why_precision: String,
     /// The kernel's bits of the effects that the scene calls for.
     effect_bits: u32,
-    /// Bytes of the SPIR-V module of the pipeline, before the driver specialises it.
-    module_bytes: usize,
     #[serde(skip_serializing_if = "Option::is_none")]
     frame: Option<Frame>,
     effects: Vec<Effect>,
@@ -158,7 +155,6 @@ fn report(
         precision: rung.name(),
         why_precision: chosen.why,
         effect_bits: own.to_bits(),
-        module_bytes: kernel_module::for_rung(rung)?.words().len() * 4,
         frame,
         effects,
     })
@@ -211,7 +207,7 @@ fn table(report: &ExplainReport) -> String {
     // Writing to a String cannot fail.
     let _ = add_scene(&mut text, report);
     if let Some(frame) = &report.frame {
-        let _ = add_frame(&mut text, frame, report.module_bytes);
+        let _ = add_frame(&mut text, frame);
     }
     let _ = add_called(&mut text, report);
     let _ = add_idle(&mut text, report);
@@ -246,7 +242,7 @@ fn add_scene(text: &mut String, report: &ExplainReport) -> fmt::Result {
 }
 
 /// The time of a frame, and how long its pipeline took to compile.
-fn add_frame(text: &mut String, frame: &Frame, module_bytes: usize) -> fmt::Result {
+fn add_frame(text: &mut String, frame: &Frame) -> fmt::Result {
     let spread = |cost: &Cost| {
         format!(
             "{:.3} ± {:.3} ms",
@@ -267,8 +263,7 @@ fn add_frame(text: &mut String, frame: &Frame, module_bytes: usize) -> fmt::Resu
     if frame.own.compile_milliseconds > 0.0 {
         writeln!(
             text,
-            "the pipeline is made of {} KiB of SPIR-V and was compiled in {:.0} ms{}",
-            module_bytes / 1024,
+            "the pipeline was compiled in {:.0} ms{}",
             frame.own.compile_milliseconds,
             frame.all_effects.map_or_else(String::new, |all| format!(
                 ", that of all effects in {:.0} ms",
