@@ -34,6 +34,7 @@ mod op {
     pub(super) const SPEC_CONSTANT_FALSE: u32 = 49;
     pub(super) const SPEC_CONSTANT: u32 = 50;
     pub(super) const FUNCTION: u32 = 54;
+    pub(super) const FUNCTION_PARAMETER: u32 = 55;
     pub(super) const FUNCTION_END: u32 = 56;
     pub(super) const FUNCTION_CALL: u32 = 57;
     pub(super) const VARIABLE: u32 = 59;

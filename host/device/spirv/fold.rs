@@ -104,21 +104,30 @@ impl Written {
     }
 }
 
+/// The id that an instruction defines, if it is known to define one.
 fn result_of(opcode: u32, operands: &[u32]) -> Option<u32> {
     match opcode {
         op::LABEL => operands.first().copied(),
+        op::FUNCTION | op::FUNCTION_PARAMETER | op::FUNCTION_CALL | op::EXT_INST => {
+            operands.get(1).copied()
+        }
+        _ if is_pure(opcode, operands) => operands.get(1).copied(),
+        _ => None,
+    }
+}
+
+/// The id that an instruction may define, for all that is known. Such instructions stay, and so
+/// does what they use.
+fn perhaps_result_of(opcode: u32, operands: &[u32]) -> Option<u32> {
+    match opcode {
         op::NOP
         | op::LINE
         | op::NO_LINE
-        | op::FUNCTION_END
         | op::STORE
         | op::COPY_MEMORY
         | op::ATOMIC_STORE
         | op::CONTROL_BARRIER
-        | op::MEMORY_BARRIER
-        | op::LOOP_MERGE
-        | op::SELECTION_MERGE
-        | op::BRANCH..=op::UNREACHABLE => None,
+        | op::MEMORY_BARRIER => None,
         _ => operands.get(1).copied(),
     }
 }
@@ -256,8 +265,8 @@ impl Module {
         };
         let mut words = HashSet::new();
         for it in globals {
-            if let Some(id) = it.result() {
-                module.set(id, Varying);
+            if let [_, id, ..] = it.operands {
+                module.set(*id, Varying);
             }
             match (it.opcode, it.operands) {
                 (op::TYPE_BOOL, [id]) => module.bool_type = Some(*id),
@@ -349,7 +358,13 @@ impl Module {
                     continue;
                 }
                 for it in block.instructions {
-                    let Some(id) = it.result() else { continue };
+                    let Some(id) = it.result() else {
+                        if let Some(id) = perhaps_result_of(it.opcode, it.operands) {
+                            changes |= self.value(id) != Varying;
+                            self.set(id, Varying);
+                        }
+                        continue;
+                    };
                     let known = self.value(id);
                     let found = known.or(self.evaluate(it, block.label, &flow));
                     if found != known {
@@ -757,7 +772,7 @@ mod tests {
     }
 
     /// A way that is left keeps its selection, with the merge block that structured control flow
-    /// demands; and a phi there has an entry for each block that leads to it.
+    /// demands.
     #[test]
     fn selections_keep_their_form() {
         let all = folded(7, &nested());
@@ -772,6 +787,35 @@ mod tests {
             .collect();
         // `true` was not there: it has the first free id.
         assert_eq!(conditions, [BOUND, BOUND]);
+    }
+
+    /// A phi has an entry for each block that is written to lead to it, of an undefined value where
+    /// it led elsewhere before.
+    #[test]
+    fn phis_have_an_entry_for_each_block_that_leads_there() {
+        let body: Vec<(u32, &[u32])> = vec![
+            (op::I_EQUAL, &[BOOL, 20, SPECIAL, SEVEN]),
+            (op::SELECTION_MERGE, &[14, 0]),
+            (op::BRANCH_CONDITIONAL, &[20, 12, 13]),
+            (op::LABEL, &[12]),
+            (op::BRANCH, &[14]),
+            (op::LABEL, &[13]),
+            (op::BRANCH, &[14]),
+            (op::LABEL, &[14]),
+            (op::PHI, &[WORD, 21, SEVEN, 12, SPECIAL, 13]),
+            (op::STORE, &[VARIABLE, 21]),
+            RETURN,
+        ];
+        for (special, value, from) in [(7, SEVEN, 12), (8, SPECIAL, 13)] {
+            let all = folded(special, &body);
+            let phi = all.iter().find(|(opcode, _)| *opcode == op::PHI);
+            let (_, operands) = phi.expect("the stored value");
+            // `true` has the first free id here, too.
+            let mut expected = vec![WORD, 21, value, from, 0, 11];
+            expected[4] = operands[4];
+            assert_eq!(operands, &expected);
+            assert!([BOUND, BOUND + 1].contains(&operands[4]));
+        }
     }
 
     /// A loop that is never repeated keeps its continue block, with an undefined value for its phi.
@@ -797,7 +841,9 @@ mod tests {
         let phi = once.iter().find(|(opcode, _)| *opcode == op::PHI);
         let (_, operands) = phi.expect("the stored value");
         assert_eq!(operands, &[WORD, 20, SEVEN, 11, BOUND, 14]);
-        assert!(once.contains(&(op::LABEL, vec![14])) && once.contains(&(op::BRANCH, vec![12])));
+        let goes_on = once.iter().position(|it| *it == (op::LABEL, vec![14]));
+        let next = &once[goes_on.expect("the continue block") + 1];
+        assert_eq!(next, &(op::BRANCH, vec![12]));
         assert!(once.iter().all(|(opcode, _)| *opcode != op::I_ADD));
         // Here it is repeated for ever, and the value varies.
         let many = folded(8, &body);
@@ -827,6 +873,28 @@ mod tests {
             let stores = all.iter().filter(|(opcode, _)| *opcode == op::STORE);
             assert_eq!(stores.count(), 1);
         }
+    }
+
+    /// An instruction that is not known stays, with what it uses, and its result varies.
+    #[test]
+    fn what_is_not_known_stays() {
+        const IMAGE_WRITE: u32 = 99;
+        const GROUP_ALL: u32 = 261;
+        let body: Vec<(u32, &[u32])> = vec![
+            (op::I_ADD, &[WORD, 20, SPECIAL, SEVEN]),
+            (op::I_ADD, &[WORD, 21, SPECIAL, SPECIAL]),
+            (IMAGE_WRITE, &[VARIABLE, 20, SEVEN]),
+            (GROUP_ALL, &[BOOL, 22, SEVEN, 21]),
+            (op::SELECTION_MERGE, &[13, 0]),
+            (op::BRANCH_CONDITIONAL, &[22, 12, 13]),
+            (op::LABEL, &[12]),
+            (op::STORE, &[VARIABLE, SEVEN]),
+            (op::BRANCH, &[13]),
+            (op::LABEL, &[13]),
+            RETURN,
+        ];
+        let all = folded(1, &body);
+        assert_eq!(all.len(), body.len() + 2, "{all:?}");
     }
 
     /// Each operation gives what a device computes.
