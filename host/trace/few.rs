@@ -56,8 +56,8 @@ pub(super) fn trace<const ANY: bool>(
 }
 
 /// Finds where each ray hits a sphere of its own, whatever other spheres there are. There are as
-/// many as rays. `put` receives the ray's index and the parameter, [`Hit::NONE_T`] if there is no
-/// hit.
+/// many as rays. `put` receives, in order, the ray's index and the parameter, [`Hit::NONE_T`] for
+/// no hit.
 ///
 /// The query's rung must be [bounded](Rung::is_bounded).
 pub(super) fn meet(

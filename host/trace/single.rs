@@ -109,7 +109,7 @@ impl<'a> Single<'a> {
     }
 
     /// Finds where each ray hits a sphere of its own, of which there are as many as rays. `put`
-    /// receives the ray's index and the parameter, [`Hit::NONE_T`] if there is no hit.
+    /// receives, in order, the ray's index and the parameter, [`Hit::NONE_T`] for no hit.
     pub(crate) fn meet(&self, rays: &[Ray], spheres: &[Sphere], mut put: impl FnMut(usize, f32)) {
         if self.query.rung.is_bounded() {
             few::meet(self.level, &self.query, rays, spheres, put);
