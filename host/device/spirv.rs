@@ -86,6 +86,26 @@ mod op {
     pub(super) const MODE_LOCAL_SIZE: u32 = 17;
     pub(super) const MODEL_GL_COMPUTE: u32 = 5;
     pub(super) const CAPABILITY_FLOAT64: u32 = 10;
+
+    /// The id that an instruction of a function defines, or may define if it is none that is known.
+    pub(super) fn may_define(opcode: u32, operands: &[u32]) -> Option<u32> {
+        match opcode {
+            LABEL => operands.first().copied(),
+            NOP
+            | LINE
+            | NO_LINE
+            | FUNCTION_END
+            | STORE
+            | COPY_MEMORY
+            | ATOMIC_STORE
+            | CONTROL_BARRIER
+            | MEMORY_BARRIER
+            | LOOP_MERGE
+            | SELECTION_MERGE
+            | BRANCH..=UNREACHABLE => None,
+            _ => operands.get(1).copied(),
+        }
+    }
 }
 
 /// A compute entry point of a module.
@@ -423,29 +443,16 @@ struct Function {
 
 impl Function {
     fn add(&mut self, opcode: u32, operands: &[u32]) {
+        let defined = op::may_define(opcode, operands);
+        self.defines.extend(defined);
         match (opcode, operands) {
             (op::STORE | op::COPY_MEMORY | op::ATOMIC_STORE, _) => self.pointers.extend(operands),
-            (
-                op::CONTROL_BARRIER
-                | op::MEMORY_BARRIER
-                | op::LOOP_MERGE
-                | op::SELECTION_MERGE
-                | op::BRANCH..=op::UNREACHABLE
-                | op::FUNCTION_END,
-                _,
-            ) => {}
-            (op::LABEL, [label, ..]) => self.defines.push(*label),
-            (_, [_, result, rest @ ..]) => {
-                self.defines.push(*result);
-                if opcode == op::FUNCTION_CALL {
-                    self.calls.extend(rest.first());
-                    self.pointers.extend(rest);
-                } else {
-                    // The first operand of loads, access chains, atomics and array lengths is a
-                    // pointer.
-                    self.pointers.extend(rest.first());
-                }
+            (op::FUNCTION_CALL, [_, _, rest @ ..]) => {
+                self.calls.extend(rest.first());
+                self.pointers.extend(rest);
             }
+            // The first operand of loads, access chains, atomics and array lengths is a pointer.
+            (_, [_, _, rest @ ..]) if defined.is_some() => self.pointers.extend(rest.first()),
             _ => {}
         }
     }

@@ -116,22 +116,6 @@ fn result_of(opcode: u32, operands: &[u32]) -> Option<u32> {
     }
 }
 
-/// The id that an instruction may define, for all that is known. Such instructions stay, and so
-/// does what they use.
-fn perhaps_result_of(opcode: u32, operands: &[u32]) -> Option<u32> {
-    match opcode {
-        op::NOP
-        | op::LINE
-        | op::NO_LINE
-        | op::STORE
-        | op::COPY_MEMORY
-        | op::ATOMIC_STORE
-        | op::CONTROL_BARRIER
-        | op::MEMORY_BARRIER => None,
-        _ => operands.get(1).copied(),
-    }
-}
-
 /// Whether an instruction does nothing but define its result.
 fn is_pure(opcode: u32, operands: &[u32]) -> bool {
     match opcode {
@@ -178,63 +162,48 @@ impl Value {
     }
 }
 
+/// What an instruction makes of two known values; `None` if it is not followed.
+fn operation(opcode: u32) -> Option<fn(u32, u32) -> Value> {
+    let operation: fn(u32, u32) -> Value = match opcode {
+        op::I_ADD => |a, b| Known(a.wrapping_add(b)),
+        op::I_SUB => |a, b| Known(a.wrapping_sub(b)),
+        op::I_MUL => |a, b| Known(a.wrapping_mul(b)),
+        op::LOGICAL_EQUAL | op::I_EQUAL => |a, b| Value::of(a == b),
+        op::LOGICAL_NOT_EQUAL | op::I_NOT_EQUAL => |a, b| Value::of(a != b),
+        op::LOGICAL_OR | op::BITWISE_OR => |a, b| Known(a | b),
+        op::LOGICAL_AND | op::BITWISE_AND => |a, b| Known(a & b),
+        op::BITWISE_XOR => |a, b| Known(a ^ b),
+        op::U_GREATER_THAN => |a, b| Value::of(a > b),
+        op::U_GREATER_THAN_EQUAL => |a, b| Value::of(a >= b),
+        op::U_LESS_THAN => |a, b| Value::of(a < b),
+        op::U_LESS_THAN_EQUAL => |a, b| Value::of(a <= b),
+        op::SHIFT_LEFT_LOGICAL => |a, b| a.checked_shl(b).map_or(Varying, Known),
+        op::SHIFT_RIGHT_LOGICAL => |a, b| a.checked_shr(b).map_or(Varying, Known),
+        _ => return None,
+    };
+    Some(operation)
+}
+
 /// What an instruction makes of these values.
 fn evaluate(opcode: u32, values: &[Value]) -> Value {
     match (opcode, values) {
-        (op::LOGICAL_AND | op::BITWISE_AND, [Known(0), _] | [_, Known(0)]) => Known(0),
-        (op::LOGICAL_OR, [Known(1), _] | [_, Known(1)]) => Known(1),
+        (op::LOGICAL_AND | op::BITWISE_AND, [Known(0), _] | [_, Known(0)]) => return Known(0),
+        (op::LOGICAL_OR, [Known(1), _] | [_, Known(1)]) => return Known(1),
         (op::SELECT, [Known(condition), yes, no]) => {
-            if *condition == 1 {
-                *yes
-            } else {
-                *no
-            }
+            return if *condition == 1 { *yes } else { *no };
         }
-        (op::SELECT, [_, yes, no]) if yes == no => *yes,
-        (op::LOGICAL_NOT, [Known(a)]) => Known(a ^ 1),
-        (op::NOT, [Known(a)]) => Known(!a),
-        (_, [Known(a), Known(b)]) => {
-            let (a, b) = (*a, *b);
-            match opcode {
-                op::I_ADD => Known(a.wrapping_add(b)),
-                op::I_SUB => Known(a.wrapping_sub(b)),
-                op::I_MUL => Known(a.wrapping_mul(b)),
-                op::LOGICAL_EQUAL | op::I_EQUAL => Value::of(a == b),
-                op::LOGICAL_NOT_EQUAL | op::I_NOT_EQUAL => Value::of(a != b),
-                op::LOGICAL_OR | op::BITWISE_OR => Known(a | b),
-                op::LOGICAL_AND | op::BITWISE_AND => Known(a & b),
-                op::BITWISE_XOR => Known(a ^ b),
-                op::U_GREATER_THAN => Value::of(a > b),
-                op::U_GREATER_THAN_EQUAL => Value::of(a >= b),
-                op::U_LESS_THAN => Value::of(a < b),
-                op::U_LESS_THAN_EQUAL => Value::of(a <= b),
-                op::SHIFT_LEFT_LOGICAL if b < 32 => Known(a << b),
-                op::SHIFT_RIGHT_LOGICAL if b < 32 => Known(a >> b),
-                _ => Varying,
-            }
-        }
-        _ if !is_followed(opcode) => Varying,
+        (op::SELECT, [_, yes, no]) if yes == no => return *yes,
+        (op::LOGICAL_NOT, [Known(a)]) => return Known(a ^ 1),
+        (op::NOT, [Known(a)]) => return Known(!a),
+        _ => {}
+    }
+    let operation = operation(opcode);
+    match (operation, values) {
+        (Some(operation), [Known(a), Known(b)]) => operation(*a, *b),
+        (None, _) if !matches!(opcode, op::SELECT | op::LOGICAL_NOT | op::NOT) => Varying,
         _ if values.contains(&Unset) => Unset,
         _ => Varying,
     }
-}
-
-/// Whether [`evaluate`] knows what an instruction makes of known values.
-fn is_followed(opcode: u32) -> bool {
-    matches!(
-        opcode,
-        op::I_ADD
-            | op::I_SUB
-            | op::I_MUL
-            | op::LOGICAL_EQUAL..=op::I_NOT_EQUAL
-            | op::U_GREATER_THAN
-            | op::U_GREATER_THAN_EQUAL
-            | op::U_LESS_THAN
-            | op::U_LESS_THAN_EQUAL
-            | op::SHIFT_LEFT_LOGICAL
-            | op::SHIFT_RIGHT_LOGICAL
-            | op::BITWISE_OR..=op::NOT
-    )
 }
 
 /// What functions share.
@@ -359,7 +328,8 @@ impl Module {
                 }
                 for it in block.instructions {
                     let Some(id) = it.result() else {
-                        if let Some(id) = perhaps_result_of(it.opcode, it.operands) {
+                        // What is not known stays, and so does what it uses.
+                        if let Some(id) = op::may_define(it.opcode, it.operands) {
                             changes |= self.value(id) != Varying;
                             self.set(id, Varying);
                         }
@@ -390,25 +360,21 @@ impl Module {
                 .filter(|pair| flow.edges.contains(&(pair[1], block)))
                 .fold(Unset, |value, pair| value.or(self.value(pair[0])));
         }
-        if !is_followed(it.opcode) {
-            return Varying;
-        }
         let mut values = [Varying; 3];
-        let count = (it.operands.len() - 2).min(3);
-        for (value, id) in values.iter_mut().zip(&it.operands[2..]) {
+        let operands = &it.operands[2..];
+        for (value, id) in values.iter_mut().zip(operands) {
             *value = self.value(*id);
         }
-        evaluate(it.opcode, &values[..count])
+        evaluate(it.opcode, &values[..operands.len().min(3)])
     }
 
     /// Where a block can go.
     fn targets(&self, block: &Block<'_>) -> Vec<u32> {
-        let all = block.targets();
         match (self.chosen(block), self.selector(block)) {
             (Some(target), _) => vec![target],
             // The condition is not computed yet.
             (None, Unset) => Vec::new(),
-            _ => all,
+            _ => block.targets(),
         }
     }
 

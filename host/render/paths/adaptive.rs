@@ -12,7 +12,7 @@
 //! more than that is taken in vain, and looking costs little. Everything is decided by numbers that
 //! do not depend on the threads.
 
-use std::ops::{ControlFlow, Range, RangeInclusive};
+use std::ops::{Range, RangeInclusive};
 use std::time::{Duration, Instant};
 
 use glam::UVec2;
@@ -21,9 +21,10 @@ use spherule_kernel::color::luminance;
 use spherule_kernel::film::ADAPTIVE_TILE;
 use spherule_kernel::{Accumulator, PathLaunch};
 
-use super::budget::{Budget, StoppedBy};
+use super::budget::{Budget, GoesOn, StoppedBy};
 use crate::error::Result;
 use crate::film;
+use crate::render::Progress;
 
 /// The fewest samples after which a tile may stop.
 const FEWEST: u32 = 16;
@@ -81,7 +82,7 @@ pub(super) trait Tracer {
         &mut self,
         launch: &PathLaunch,
         sums: &mut [Accumulator],
-        goes_on: &(dyn Fn(f64) -> bool + Sync),
+        goes_on: GoesOn<'_>,
     ) -> Result<(bool, Duration)>;
 
     /// Brings the sums of the tiles that take samples here, so that they can be looked at. Each
@@ -362,7 +363,7 @@ pub(super) fn take_samples(
     adaptive: &mut Adaptive,
     launch: &PathLaunch,
     goal: &Goal,
-    progress: &(dyn Fn(f64) -> ControlFlow<()> + Sync),
+    progress: Progress<'_>,
     tracer: &mut impl Tracer,
 ) -> Result<StoppedBy> {
     tracer.give(&adaptive.sums)?;
@@ -424,7 +425,7 @@ mod tests {
             &mut self,
             launch: &PathLaunch,
             sums: &mut [Accumulator],
-            goes_on: &(dyn Fn(f64) -> bool + Sync),
+            goes_on: GoesOn<'_>,
         ) -> Result<(bool, Duration)> {
             assert_eq!(launch.tile_size.y as usize * 16, sums.len());
             for (index, sum) in sums.iter_mut().enumerate() {

@@ -1,6 +1,6 @@
 //! How far a render came, and what ends it: the number of samples, or a time limit.
 
-use std::ops::{ControlFlow, RangeInclusive};
+use std::ops::RangeInclusive;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
@@ -10,6 +10,10 @@ use spherule_kernel::Accumulator;
 use spherule_kernel::color::luminance;
 
 use crate::error::Result;
+use crate::render::Progress;
+
+/// Is told the share of a launch's pixels that are traced, and says whether to go on.
+pub(super) type GoesOn<'a> = &'a (dyn Fn(f64) -> bool + Sync);
 
 /// How long the samples between two looks at the clock should take.
 const STRIDE: Duration = Duration::from_millis(200);
@@ -144,8 +148,8 @@ impl Budget {
     /// that took.
     pub(super) fn spend(
         &mut self,
-        progress: &(dyn Fn(f64) -> ControlFlow<()> + Sync),
-        mut pass: impl FnMut(u32, u32, &(dyn Fn(f64) -> bool + Sync)) -> Result<(bool, Duration)>,
+        progress: Progress<'_>,
+        mut pass: impl FnMut(u32, u32, GoesOn<'_>) -> Result<(bool, Duration)>,
     ) -> Result<StoppedBy> {
         while let Some((first, count)) = self.next() {
             let is_interrupted = AtomicBool::new(false);
@@ -241,6 +245,8 @@ fn noise(accumulators: &[Accumulator]) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use std::ops::ControlFlow;
+
     use super::*;
     use crate::render::QUIET;
 

@@ -10,7 +10,7 @@ use spherule_kernel::precision::OnRung;
 use spherule_kernel::{Accumulator, Effects, PathLaunch, Rung};
 
 use super::adaptive::{Adaptive, Goal, Tracer, take_samples, tiles_of};
-use super::budget::{Budget, Reached};
+use super::budget::{Budget, GoesOn, Reached};
 use super::preview::Preview;
 use super::{Prepared, Progress, Sampled, Settings, together};
 use crate::error::Result;
@@ -70,9 +70,7 @@ pub fn render(prepared: &Prepared, settings: &Settings, progress: Progress<'_>) 
     let mut accumulators = film::allocate::<Accumulator>(size.x, size.y)?;
     // Traces until `goes_on`, which is told the share of the pixels that are done, says no; whether
     // it never did.
-    let pass = |launch: &PathLaunch,
-                accumulators: &mut [Accumulator],
-                goes_on: &(dyn Fn(f64) -> bool + Sync)| {
+    let pass = |launch: &PathLaunch, accumulators: &mut [Accumulator], goes_on: GoesOn<'_>| {
         let (done, all) = (AtomicUsize::new(0), accumulators.len());
         let goes_on = |more: usize| {
             let done = done.fetch_add(more, Ordering::Relaxed) + more;
@@ -134,7 +132,7 @@ pub fn render(prepared: &Prepared, settings: &Settings, progress: Progress<'_>) 
 }
 
 /// Traces a launch for as long as it is told to go on, and says whether all of it was traced.
-type Pass<'a> = &'a dyn Fn(&PathLaunch, &mut [Accumulator], &(dyn Fn(f64) -> bool + Sync)) -> bool;
+type Pass<'a> = &'a dyn Fn(&PathLaunch, &mut [Accumulator], GoesOn<'_>) -> bool;
 
 /// Takes samples of each tile of `image` until `goal` or `progress` ends that.
 fn take_where_needed(
@@ -159,7 +157,7 @@ impl Tracer for Here<'_> {
         &mut self,
         launch: &PathLaunch,
         sums: &mut [Accumulator],
-        goes_on: &(dyn Fn(f64) -> bool + Sync),
+        goes_on: GoesOn<'_>,
     ) -> Result<(bool, Duration)> {
         let begun = Instant::now();
         let is_done = (self.0)(launch, sums, goes_on);

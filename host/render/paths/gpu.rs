@@ -9,7 +9,7 @@ use spherule_kernel::material::microfacet::ALBEDO_LEN;
 use spherule_kernel::{Accumulator, Effects, Light, Material, PathLaunch, Sphere};
 
 use super::adaptive::{self, Adaptive, Goal, Tracer, take_samples, tiles_of};
-use super::budget::{Budget, Reached, StoppedBy};
+use super::budget::{Budget, GoesOn, Reached, StoppedBy};
 use super::preview::Preview;
 use super::{Prepared, Progress, Sampled, Settings};
 use crate::device::canary::Canary;
@@ -497,7 +497,7 @@ impl Tracer for Work<'_> {
         &mut self,
         launch: &PathLaunch,
         sums: &mut [Accumulator],
-        goes_on: &(dyn Fn(f64) -> bool + Sync),
+        goes_on: GoesOn<'_>,
     ) -> Result<(bool, Duration)> {
         let all = sums.len();
         let of_pixels = |done: usize| goes_on(done as f64 / all as f64);
