@@ -451,7 +451,7 @@ mod tests {
             of(a.simd_gt(b)),
             of(!a.simd_ge(b)),
             of(a.simd_lt(b) | a.simd_gt(b) & b.simd_ge(zero)),
-            L::choose(a.simd_lt(b), || a, || b),
+            L::select(a.simd_lt(b), a, b),
         ]
     }
 

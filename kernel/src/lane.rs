@@ -52,13 +52,8 @@ pub trait Lane:
     }
     /// `yes` where the mask is true, else `no`.
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
-    /// As [`Lane::select`], for arguments that single numbers compute only if they are selected: a
+    /// As [`Lane::select`], for pairs that single numbers compute only if they are selected: a
     /// processor predicts most branches.
-    #[inline(always)]
-    fn choose(mask: Self::Mask, yes: impl FnOnce() -> Self, no: impl FnOnce() -> Self) -> Self {
-        Self::select(mask, yes(), no())
-    }
-    /// As [`Lane::choose`], for pairs.
     #[inline(always)]
     fn choose_pair(
         mask: Self::Mask,
@@ -119,11 +114,6 @@ macro_rules! scalar {
             #[inline(always)]
             fn select(mask: bool, yes: Self, no: Self) -> Self {
                 if mask { yes } else { no }
-            }
-
-            #[inline(always)]
-            fn choose(mask: bool, yes: impl FnOnce() -> Self, no: impl FnOnce() -> Self) -> Self {
-                if mask { yes() } else { no() }
             }
 
             #[inline(always)]

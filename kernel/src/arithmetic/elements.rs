@@ -28,6 +28,49 @@ pub fn set<T, const N: usize>(array: &mut [T; N], index: usize, value: T) {
     unsafe { *array.index_unchecked_mut(index.min(N - 1)) = value };
 }
 
+/// Searches the first of some indices of which something holds that holds of all that follow. The
+/// caller asks about the [middle](Bisection::middle) and [narrows](Bisection::narrow) the search;
+/// rust-gpu takes no closure here that borrows a buffer.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Bisection {
+    /// The first index that it may hold of; at the end, the one that is searched.
+    pub(crate) low: usize,
+    high: usize,
+}
+
+impl Bisection {
+    /// Among the indices below `count`, which is found if it holds of none.
+    #[inline]
+    pub(crate) fn below(count: usize) -> Self {
+        Self {
+            low: 0,
+            high: count,
+        }
+    }
+
+    /// Whether there is more to ask.
+    #[inline]
+    pub(crate) fn is_open(self) -> bool {
+        self.low < self.high
+    }
+
+    /// The index to ask about.
+    #[inline]
+    pub(crate) fn middle(self) -> usize {
+        self.low + (self.high - self.low) / 2
+    }
+
+    /// Goes on with the half that is left if it holds of the middle, or if it does not.
+    #[inline]
+    pub(crate) fn narrow(&mut self, holds: bool) {
+        if holds {
+            self.high = self.middle();
+        } else {
+            self.low = self.middle() + 1;
+        }
+    }
+}
+
 /// The element at `index` of a slice; zeros for an index beyond it. On a GPU the slice is a buffer
 /// that the launch binds, and the driver ensures this (`robustBufferAccess`).
 #[inline]

@@ -14,7 +14,7 @@ use glam::Vec3;
 #[cfg(target_arch = "spirv")]
 use spirv_std::num_traits::Float as _;
 
-use crate::arithmetic::elements::read;
+use crate::arithmetic::elements::{Bisection, read};
 use crate::path::sampling::{Pair, cone, cone_density};
 use crate::sphere::Sphere;
 
@@ -106,19 +106,14 @@ impl Light {
 #[inline]
 #[must_use]
 pub(crate) fn choose(lights: &[Light], u: f32) -> (Light, f32) {
-    let mut low = 0;
-    let mut high = lights.len().max(1) - 1;
-    while low < high {
-        let middle = low + (high - low) / 2;
-        if u < read(lights, middle).cumulative {
-            high = middle;
-        } else {
-            low = middle + 1;
-        }
+    let mut search = Bisection::below(lights.len().max(1) - 1);
+    while search.is_open() {
+        search.narrow(u < read(lights, search.middle()).cumulative);
     }
-    let light = read(lights, low);
-    let below = if low > 0 {
-        read(lights, low - 1).cumulative
+    let chosen = search.low;
+    let light = read(lights, chosen);
+    let below = if chosen > 0 {
+        read(lights, chosen - 1).cumulative
     } else {
         0.0
     };
@@ -154,9 +149,8 @@ pub fn sphere_density(sphere: Sphere, point: Vec3) -> f32 {
 }
 
 /// 1 − cos of the angle between the middle and the edge of the cap of a lamp from which any light
-/// reaches a ball. Not above zero if there is
-/// none. Where a lamp's normal is n, light reaches what is above its tangent plane, and a ball of
-/// radius r has points there if (C − L) · n + r > ρ.
+/// reaches a ball. Not above zero if there is none. Where a lamp's normal is n, light reaches what
+/// is above its tangent plane, and a ball of radius r has points there if (C − L) · n + r > ρ.
 #[inline]
 #[must_use]
 pub fn cap_height(lamp: Sphere, ball: Sphere) -> f32 {

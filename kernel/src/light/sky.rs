@@ -8,7 +8,7 @@ use glam::{UVec2, Vec2, Vec3};
 #[cfg(target_arch = "spirv")]
 use spirv_std::num_traits::Float as _;
 
-use crate::arithmetic::elements::read;
+use crate::arithmetic::elements::{Bisection, read};
 use crate::effects::Effects;
 use crate::material::microfacet::ALBEDO_LEN;
 
@@ -209,28 +209,23 @@ fn find(tables: &[f32], first: usize, count: u32, u: f32) -> (u32, f32) {
     if (count == 0) | (first > len) || (count as usize > len - first) {
         return (0, 0.0);
     }
-    let mut low = 0;
-    let mut high = count - 1;
-    while low < high {
-        let middle = low + (high - low) / 2;
-        if u < read(tables, first + middle as usize) {
-            high = middle;
-        } else {
-            low = middle + 1;
-        }
+    let mut search = Bisection::below(count as usize - 1);
+    while search.is_open() {
+        search.narrow(u < read(tables, first + search.middle()));
     }
-    let below = if low > 0 {
-        tables[first + low as usize - 1]
+    let found = search.low;
+    let below = if found > 0 {
+        tables[first + found - 1]
     } else {
         0.0
     };
-    let width = tables[first + low as usize] - below;
+    let width = tables[first + found] - below;
     let within = if width > 0.0 {
         (u - below) / width
     } else {
         0.5
     };
-    (low, within.clamp(0.0, 1.0))
+    (found as u32, within.clamp(0.0, 1.0))
 }
 
 const _: () = assert!(size_of::<Sky>() == 80);

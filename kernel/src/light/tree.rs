@@ -25,7 +25,7 @@ use glam::Vec3;
 use spirv_std::num_traits::Float as _;
 
 use super::Light;
-use crate::arithmetic::elements::read;
+use crate::arithmetic::elements::{Bisection, read};
 
 /// The least cosine that counts, so that rounding makes no light impossible that gives a little.
 const LEAST_COSINE: f32 = 1.0 / 1024.0;
@@ -107,17 +107,12 @@ pub fn choose(lights: &[Light], point: Vec3, facing: Vec3, u: f32) -> Light {
 pub fn probability_of(lights: &[Light], sphere: u32, point: Vec3, facing: Vec3) -> f32 {
     let top = read(lights, 0);
     let count = top.sphere as usize / 2;
-    let mut low = 0;
-    let mut high = count;
-    while low < high {
-        let middle = low + (high - low) / 2;
-        if read(lights, ordered(lights, count, middle)).sphere < sphere {
-            low = middle + 1;
-        } else {
-            high = middle;
-        }
+    let mut search = Bisection::below(count);
+    while search.is_open() {
+        let leaf = ordered(lights, count, search.middle());
+        search.narrow(read(lights, leaf).sphere >= sphere);
     }
-    let leaf = ordered(lights, count, low.min(count.max(1) - 1));
+    let leaf = ordered(lights, count, search.low.min(count.max(1) - 1));
     if read(lights, leaf).sphere != sphere {
         return 0.0;
     }

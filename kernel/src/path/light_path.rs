@@ -230,9 +230,8 @@ impl Path {
 
 /// Russian roulette: ends dark paths by chance, and raises the weight of those that go on.
 ///
-/// A chance of the weight itself is the usual choice. It saves less time than it makes noise: with
-/// this one the time that a given noise takes is 1.7 times less under an even sky, and 1.1 times
-/// less in a closed box.
+/// A chance of the weight itself is the usual choice; but what it saves in time is less than what
+/// it adds in noise. `benches/peers/light/run` has both, scene by scene.
 #[inline]
 pub(super) fn survives(path: &mut Path, u: f32) -> bool {
     let brightest = path.throughput.max_element();

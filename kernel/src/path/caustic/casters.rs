@@ -4,7 +4,7 @@
 //! The table lies in the kernel's tables: the number of entries, and the entries in the order of
 //! the spheres' indices, so that they are found by them.
 
-use crate::arithmetic::elements::read;
+use crate::arithmetic::elements::{Bisection, read};
 use crate::hit::Hit;
 
 /// A sphere that casts caustics.
@@ -65,8 +65,8 @@ impl Entry {
 
     /// The entry with this number of the table at `first`.
     #[inline]
-    fn read(tables: &[f32], first: u32, number: u32) -> Self {
-        let at = first as usize + 1 + LEN * number as usize;
+    fn read(tables: &[f32], first: u32, number: usize) -> Self {
+        let at = first as usize + 1 + LEN * number;
         let index = |at: usize| {
             let (upper, lower) = (read(tables, at) as u32, read(tables, at + 1) as u32);
             upper.wrapping_mul(LOWER).wrapping_add(lower)
@@ -82,36 +82,27 @@ impl Entry {
     #[inline]
     #[must_use]
     pub fn choose(tables: &[f32], first: u32, u: f32) -> Self {
-        let count = read(tables, first as usize) as u32;
-        let (mut low, mut high) = (0, count.max(1) - 1);
-        while low < high {
-            let middle = low + (high - low) / 2;
-            let at = first as usize + LEN * (middle as usize + 1);
-            if u < read(tables, at) {
-                high = middle;
-            } else {
-                low = middle + 1;
-            }
+        let count = read(tables, first as usize) as u32 as usize;
+        let mut search = Bisection::below(count.max(1) - 1);
+        while search.is_open() {
+            let at = first as usize + LEN * (search.middle() + 1);
+            search.narrow(u < read(tables, at));
         }
-        Self::read(tables, first, low)
+        Self::read(tables, first, search.low)
     }
 
     /// The entry of the sphere with this index; one of probability zero if there is none.
     #[inline]
     #[must_use]
     pub fn find(tables: &[f32], first: u32, sphere: u32) -> Self {
-        let count = read(tables, first as usize) as u32;
-        let (mut low, mut high) = (0, count);
-        while low < high {
-            let middle = low + (high - low) / 2;
-            if Self::read(tables, first, middle).sphere < sphere {
-                low = middle + 1;
-            } else {
-                high = middle;
-            }
+        let count = read(tables, first as usize) as u32 as usize;
+        let mut search = Bisection::below(count);
+        while search.is_open() {
+            let entry = Self::read(tables, first, search.middle());
+            search.narrow(entry.sphere >= sphere);
         }
-        if low < count {
-            let entry = Self::read(tables, first, low);
+        if search.low < count {
+            let entry = Self::read(tables, first, search.low);
             if entry.sphere == sphere {
                 return entry;
             }

@@ -47,10 +47,6 @@ const LEFT_OUT: &[(&str, &str)] = &[
         "takes a mask: host/lanes.rs",
     ),
     (
-        "spherule_kernel::lane::Lane::choose",
-        "takes a mask: host/lanes.rs",
-    ),
-    (
         "spherule_kernel::lane::Lane::choose_pair",
         "takes a mask: host/lanes.rs",
     ),
