@@ -1,7 +1,7 @@
 //! The look of particles: atoms become spheres with the van der Waals radius and the colour of
 //! their element. One scene unit is one ångström.
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 use spherule_kernel::{Material, Sphere};
 
@@ -9,12 +9,13 @@ use crate::film::encode::from_srgb;
 use crate::plural::count_of;
 use crate::read::particles::Atom;
 use crate::read::particles::elements::{self, Element};
-use crate::scene::World;
 use crate::scene::world::GRAIN;
+use crate::scene::{World, origin};
 
-/// A world of these atoms, with one material for each element that occurs.
+/// A world of these atoms, with one material for each element that occurs. Its origin is at this
+/// point of the atoms' coordinates.
 #[must_use]
-pub fn world(atoms: &[Atom]) -> World {
+pub fn world(atoms: &[Atom], origin: DVec3) -> World {
     let mut world = World::default();
     let elements = elements_of(atoms);
     let is_unknown = |element: &Element| element.symbol == elements::UNKNOWN.symbol;
@@ -39,10 +40,25 @@ pub fn world(atoms: &[Atom]) -> World {
     };
     let atoms = || atoms.par_iter().with_min_len(GRAIN);
     world.spheres = atoms()
-        .map(|atom| Sphere::new(atom.position, atom.element.radius))
+        .map(|atom| Sphere::new((atom.position - origin).as_vec3(), atom.element.radius))
         .collect();
     world.material_ids = atoms().map(id_of).collect();
     world
+}
+
+/// The point that becomes the origin of a scene of these atoms; `None` if they are near their own.
+#[must_use]
+pub fn origin(atoms: &[Atom]) -> Option<DVec3> {
+    let nothing = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    let (low, high) = atoms
+        .par_iter()
+        .with_min_len(GRAIN)
+        .map(|atom| {
+            let radius = f64::from(atom.element.radius);
+            (atom.position - radius, atom.position + radius)
+        })
+        .reduce(|| nothing, |a, b| (a.0.min(b.0), a.1.max(b.1)));
+    origin::near((low + high) * 0.5, low.distance(high))
 }
 
 /// The elements that occur, in the order of their first atoms. They are few, so a linear search is
@@ -87,13 +103,33 @@ mod tests {
     fn equal_elements_share_a_material() {
         let carbon = elements::by_symbol("c").expect("carbon");
         let atom = Atom {
-            position: Vec3::ZERO,
+            position: DVec3::ZERO,
             element: carbon,
         };
-        let world = world(&[atom, atom]);
+        let world = world(&[atom, atom], DVec3::ZERO);
         assert_eq!(world.materials.len(), 1);
         assert_eq!(world.material_ids, [0, 0]);
         assert_eq!(world.spheres[0].radius(), 1.7);
+    }
+
+    #[test]
+    fn far_atoms_keep_their_places() {
+        let element = elements::by_symbol("c").expect("carbon");
+        let at = |by: f64| {
+            [0.123, 1.5, -2.456].map(|x| Atom {
+                position: DVec3::new(x, 2.0 * x, -x) + by,
+                element,
+            })
+        };
+        assert_eq!(origin(&at(0.0)), None);
+        assert_eq!(origin(&[]), None);
+        let far = at(-3e6);
+        let origin = origin(&far).expect("an origin");
+        assert_eq!(origin, DVec3::splat(-3e6));
+        for (far, near) in world(&far, origin).spheres.iter().zip(at(0.0)) {
+            let off = far.center() - near.position.as_vec3();
+            assert!(off.abs().max_element() < 1e-6, "{off}");
+        }
     }
 
     #[test]
@@ -103,11 +139,11 @@ mod tests {
             .iter()
             .flat_map(|symbol| {
                 let element = elements::by_symbol(symbol).expect("an element");
-                let position = Vec3::ZERO;
+                let position = DVec3::ZERO;
                 std::iter::repeat_n(Atom { position, element }, GRAIN)
             })
             .collect();
-        let ids = world(&atoms).material_ids;
+        let ids = world(&atoms, DVec3::ZERO).material_ids;
         assert_eq!([0, 1, 2, 3].map(|run| ids[run * GRAIN]), [0, 1, 2, 1]);
     }
 }

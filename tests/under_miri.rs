@@ -1,7 +1,7 @@
 //! A little of everything that runs on a CPU without vector instructions, with numbers so small
 //! that Miri takes only minutes: `.ci/miri` runs it there. Elsewhere it takes no time.
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use spherule::accel::{Acceleration, build, build_still};
 use spherule::device::Device;
 use spherule::kernel::accel::brute::nearest_hit_in;
@@ -157,7 +157,7 @@ fn files_are_read() {
     for at in 0..xyz_text.len() {
         let _ = xyz::parse(&xyz_text[..at]);
     }
-    assert_eq!(look::world(&atoms).spheres.len(), 2);
+    assert_eq!(look::world(&atoms, DVec3::ZERO).spheres.len(), 2);
     let scene_text = "[image]\nwidth = 4\n[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\n";
     for at in (0..=scene_text.len()).step_by(if cfg!(miri) { 7 } else { 1 }) {
         let _ = toml::parse("scene.toml".as_ref(), scene_text[..at].to_owned());

@@ -34,7 +34,11 @@ impl Scene {
         let mut scene = if is_scene(path) {
             toml::load(path)?
         } else if let Some(format) = particles::ParticleFormat::of(path) {
-            Self::new(look::world(&format.load(path)?))
+            let atoms = format.load(path)?;
+            let origin = look::origin(&atoms).unwrap_or_default();
+            let mut scene = Self::new(look::world(&atoms, origin));
+            scene.origin = origin;
+            scene
         } else {
             return Err(Error::Scene(SceneError::without_place(
                 path,

@@ -10,6 +10,7 @@
 //! | `casters` | the spheres that throw light onto others |
 //! | `copies` | equal spheres, of which one can be seen |
 //! | `glass` | glass in glass, and glass around a point |
+//! | `origin` | which point becomes the origin of a scene that is far from its own |
 //! | `validate` | checks whether a scene can be rendered |
 
 mod casters;
@@ -17,6 +18,7 @@ mod copies;
 pub mod effects;
 mod glass;
 pub mod limits;
+pub(crate) mod origin;
 pub mod surroundings;
 mod validate;
 pub mod view;
@@ -24,7 +26,7 @@ pub mod world;
 
 use std::path::PathBuf;
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 pub use surroundings::{Develop, FogBall, GlassShadows, Lens, PointLight, Sampling, Surroundings};
 pub use view::View;
@@ -58,6 +60,9 @@ pub struct Scene {
     pub sampling: Sampling,
     /// How light becomes the colours of an 8-bit image.
     pub develop: Develop,
+    /// The point of the scene's files at which the origin of all coordinates here is: not zero if
+    /// what a file shows is far from its own origin, where 32-bit floats would round coordinates.
+    pub origin: DVec3,
     /// The files that the scene was read from: its own, and those that it names. No output may
     /// replace them.
     pub sources: Vec<PathBuf>,
@@ -86,6 +91,7 @@ impl Scene {
             lights: Vec::new(),
             sampling: Sampling::default(),
             develop: Develop::default(),
+            origin: DVec3::ZERO,
             sources: Vec::new(),
         }
     }

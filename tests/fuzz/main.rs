@@ -308,7 +308,7 @@ fn atoms(atoms: &[particles::Atom]) -> String {
         atoms.iter().all(|atom| atom.position.is_finite()),
         "{atoms:?}"
     );
-    let world = look::world(atoms);
+    let world = look::world(atoms, look::origin(atoms).unwrap_or_default());
     assert_eq!(world.spheres.len(), atoms.len());
     assert_eq!(world.material_ids.len(), atoms.len());
     assert!(

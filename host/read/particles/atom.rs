@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use glam::Vec3;
+use glam::DVec3;
 
 use super::elements::Element;
 use crate::error::{Error, Place, SceneError};
@@ -12,15 +12,15 @@ use crate::scene::limits::MAX_LENGTH;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Atom {
     /// The position, in ångström.
-    pub position: Vec3,
+    pub position: DVec3,
     /// The element.
     pub element: &'static Element,
 }
 
 /// Whether an atom may have this coordinate. Near the limit its radius is smaller than the spacing
 /// of floats.
-pub(super) fn is_coordinate(number: f32) -> bool {
-    number.abs() < MAX_LENGTH
+pub(super) fn is_coordinate(number: f64) -> bool {
+    number.abs() < f64::from(MAX_LENGTH)
 }
 
 /// The help for coordinates out of range.

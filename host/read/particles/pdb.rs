@@ -17,7 +17,7 @@
 
 use std::collections::HashMap;
 
-use glam::Vec3;
+use glam::DVec3;
 
 use super::atom::{Atom, TOO_FAR, WrongLine, is_coordinate};
 use super::elements::{self, Element};
@@ -99,7 +99,7 @@ fn is_misplaced_atom(line: &[u8]) -> bool {
     })
 }
 
-fn position(line: &Record<'_>, number: usize) -> Result<Vec3, WrongLine> {
+fn position(line: &Record<'_>, number: usize) -> Result<DVec3, WrongLine> {
     if line.0.len() < 54 {
         return Err(WrongLine::new(
             number,
@@ -111,7 +111,7 @@ fn position(line: &Record<'_>, number: usize) -> Result<Vec3, WrongLine> {
     let coordinate = |from: usize| {
         line.text(from, from + 7)
             .trim()
-            .parse::<f32>()
+            .parse::<f64>()
             .ok()
             .ok_or_else(|| {
                 WrongLine::new(
@@ -133,7 +133,11 @@ fn position(line: &Record<'_>, number: usize) -> Result<Vec3, WrongLine> {
                 ))
             })
     };
-    Ok(Vec3::new(coordinate(31)?, coordinate(39)?, coordinate(47)?))
+    Ok(DVec3::new(
+        coordinate(31)?,
+        coordinate(39)?,
+        coordinate(47)?,
+    ))
 }
 
 /// The atom's element: from its own columns if the file has them, else from the atom's name.
@@ -221,7 +225,7 @@ mod tests {
         assert_eq!(atoms.len(), 327);
         let counts = ["C", "N", "O", "S"].map(|symbol| count(&atoms, symbol));
         assert_eq!(counts, [202, 55, 64, 6]);
-        assert_eq!(atoms[0].position, Vec3::new(17.047, 14.099, 3.625));
+        assert_eq!(atoms[0].position, DVec3::new(17.047, 14.099, 3.625));
     }
 
     /// In this entry the occupancy column holds electron counts, which independently state each
@@ -331,7 +335,7 @@ mod tests {
             ENDMDL\n\
             MODEL        2\n\
             ATOM      4  N   ALA A   1       4.000   0.000   0.000\n";
-        let xs: Vec<f32> = parse(text)
+        let xs: Vec<f64> = parse(text)
             .expect("two atoms")
             .iter()
             .map(|atom| atom.position.x)

@@ -6,7 +6,7 @@
 
 use std::mem::MaybeUninit;
 
-use glam::Vec3;
+use glam::DVec3;
 use rayon::prelude::*;
 
 use super::atom::{Atom, WrongLine, is_coordinate};
@@ -303,7 +303,7 @@ impl Columns {
     }
 
     /// The element and the position in an atom's line.
-    fn fields<'a>(&self, line: &'a str) -> std::result::Result<(&'a str, Vec3), Wrong> {
+    fn fields<'a>(&self, line: &'a str) -> std::result::Result<(&'a str, DVec3), Wrong> {
         let mut fields = line.split_whitespace();
         if *self == Self::PLAIN {
             let symbol = fields.next().ok_or(Wrong::Blank)?;
@@ -325,9 +325,11 @@ impl Columns {
 }
 
 /// Parses the next three fields.
-fn position_of<'a>(fields: &mut impl Iterator<Item = &'a str>) -> std::result::Result<Vec3, Wrong> {
+fn position_of<'a>(
+    fields: &mut impl Iterator<Item = &'a str>,
+) -> std::result::Result<DVec3, Wrong> {
     let mut coordinate = || fields.next().and_then(number_of).ok_or(Wrong::Coordinate);
-    Ok(Vec3::new(coordinate()?, coordinate()?, coordinate()?))
+    Ok(DVec3::new(coordinate()?, coordinate()?, coordinate()?))
 }
 
 /// After a frame of `count` atoms a file ends, or another frame begins with its number.
@@ -364,7 +366,7 @@ fn missing(line: usize, expected: usize, found: usize) -> WrongLine {
 }
 
 /// A number that is not too large for a scene. Fortran's `1.0D+00` is accepted.
-fn number_of(text: &str) -> Option<f32> {
+fn number_of(text: &str) -> Option<f64> {
     let plain = |text: &str| text.parse().ok();
     plain(text)
         .or_else(|| plain(&text.replace(['D', 'd'], "e")))
@@ -492,15 +494,15 @@ mod tests {
         let atoms = parse(&text).expect("atoms");
         assert_eq!(atoms.len(), count);
         for (index, atom) in atoms.iter().enumerate() {
-            assert_eq!(atom.position.x, index as f32);
+            assert_eq!(atom.position.x, index as f64);
         }
         let with_dummies = text
             .replace("H 17 ", "X 17 ")
             .replace("H 30000 ", "Xx 30000 ");
         let atoms = parse(&with_dummies).expect("atoms");
-        let expected: Vec<f32> = (0..count)
+        let expected: Vec<f64> = (0..count)
             .filter(|atom| ![17, 30_000].contains(atom))
-            .map(|atom| atom as f32)
+            .map(|atom| atom as f64)
             .collect();
         assert!(atoms.iter().map(|atom| atom.position.x).eq(expected));
         let wrong = text.replace("H 39990 0", "H 39990 none");

@@ -1,6 +1,6 @@
 //! The table `[camera]`.
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use serde::Deserialize;
 use toml::Spanned;
 
@@ -9,7 +9,7 @@ use super::value::Value;
 use super::value::said;
 use crate::error::Result;
 use crate::scene::surroundings::Lens;
-use crate::scene::{View, limits};
+use crate::scene::{View, limits, origin};
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table")]
@@ -59,11 +59,18 @@ impl Reader<'_> {
         Ok(lens)
     }
 
+    /// The point that becomes the origin, if what this camera shows is far from the file's own.
+    pub(super) fn origin_near(&self, camera: &CameraTable) -> Option<DVec3> {
+        let eye = self.coordinates("eye", &camera.eye).ok()?;
+        let target = self.coordinates("target", &camera.target).ok()?;
+        origin::near(target, eye.distance(target))
+    }
+
     pub(super) fn view(&self, camera: &Spanned<CameraTable>) -> Result<View> {
         let table = camera.get_ref();
         let view = View {
-            eye: self.vector("eye", &table.eye)?,
-            target: self.vector("target", &table.target)?,
+            eye: self.point("eye", &table.eye)?,
+            target: self.point("target", &table.target)?,
             up: match &table.up {
                 Some(up) => self.vector("up", up)?,
                 None => Vec3::Y,

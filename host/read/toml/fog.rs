@@ -44,7 +44,7 @@ impl Reader<'_> {
         Ok(FogBall {
             medium: Fog {
                 center: match &fog.center {
-                    Some(center) => self.vector("center", center)?,
+                    Some(center) => self.point("center", center)?,
                     None => Vec3::ZERO,
                 },
                 radius: number("radius", &fog.radius, limits::RADIUS, 0.0)?,

@@ -21,7 +21,7 @@ pub(super) struct LightTable {
 
 impl Reader<'_> {
     pub(super) fn light(&self, table: &LightTable, scene: &mut Scene) -> Result<()> {
-        let position = self.vector("position", &table.position)?;
+        let position = self.point("position", &table.position)?;
         let intensity = self.color("intensity", &table.intensity, limits::INTENSITY)?;
         let radius = match &table.radius {
             Some(radius) => self.number("radius", radius, limits::LIGHT_RADIUS)?,

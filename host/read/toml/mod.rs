@@ -15,6 +15,7 @@ mod value;
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use glam::DVec3;
 use rayon::prelude::*;
 use serde::Deserialize;
 use spherule_kernel::Material;
@@ -22,8 +23,10 @@ use toml::Spanned;
 
 use super::text::read_text;
 use crate::error::{Result, SceneError};
+use crate::look;
+use crate::read::particles::Atom;
 use crate::scene::surroundings::Lens;
-use crate::scene::{Scene, World, limits};
+use crate::scene::{Scene, World, limits, origin};
 use camera::CameraTable;
 use fog::FogTable;
 use image::ImageTable;
@@ -70,13 +73,13 @@ pub fn parse(path: &Path, text: String) -> Result<Scene> {
         path,
         text: &text,
         pieces: &split.others,
+        origin: DVec3::ZERO,
     };
     if split.others_length() > MAX_TEXT {
         let last = Piece::whole(text.len()..text.len());
         return Err(Reader {
-            path,
-            text: &text,
             pieces: &[last],
+            ..reader
         }
         .wrong_at(
             0..0,
@@ -98,9 +101,8 @@ pub fn parse(path: &Path, text: String) -> Result<Scene> {
     {
         let place = Piece::whole(sphere.range.clone());
         return Err(Reader {
-            path,
-            text: &text,
             pieces: &[place],
+            ..reader
         }
         .wrong_at(
             0.."[[sphere]]".len(),
@@ -110,7 +112,22 @@ pub fn parse(path: &Path, text: String) -> Result<Scene> {
         )
         .into());
     }
-    reader.scene(file, &split.spheres)
+    let atoms = match &file.particles {
+        Some(particles) => Some(reader.atoms(&particles.file)?),
+        None => None,
+    };
+    let scene = |origin| Reader { origin, ..reader }.scene(&file, &split.spheres, atoms.as_deref());
+    // What the file shows is near the scene's origin, so that 32-bit floats hold it as it is.
+    let origin = match (&file.camera, &atoms) {
+        (Some(camera), _) => reader.origin_near(camera.get_ref()),
+        (None, Some(atoms)) => look::origin(atoms),
+        (None, None) => origin::of(&scene(DVec3::ZERO)?),
+    };
+    // A scene as large as scenes may be does not fit around every origin.
+    match origin.map(scene) {
+        Some(Ok(scene)) => Ok(scene),
+        _ => scene(DVec3::ZERO),
+    }
 }
 
 /// The most bytes of a file besides its `[[sphere]]` tables, and of one such table: parsing takes
@@ -121,12 +138,13 @@ const MAX_TEXT: usize = 1 << 24;
 const AT_ONCE: usize = 64;
 
 impl Reader<'_> {
-    fn scene(&self, file: File, spheres: &[Batch]) -> Result<Scene> {
+    fn scene(&self, file: &File, spheres: &[Batch], atoms: Option<&[Atom]>) -> Result<Scene> {
         let lens = match &file.camera {
             Some(camera) => self.lens(camera.get_ref())?,
             None => Lens::default(),
         };
-        let mut scene = Scene::new(self.world(&file, spheres, lens.shutter)?);
+        let mut scene = Scene::new(self.world(file, spheres, atoms, lens.shutter)?);
+        scene.origin = self.origin;
         scene.lens = lens;
         if let Some(width) = &file.image.width {
             scene.width = self.side("width", width)?;
@@ -163,7 +181,13 @@ impl Reader<'_> {
         Ok(scene)
     }
 
-    fn world(&self, file: &File, batches: &[Batch], shutter: (f32, f32)) -> Result<World> {
+    fn world(
+        &self,
+        file: &File,
+        batches: &[Batch],
+        atoms: Option<&[Atom]>,
+        shutter: (f32, f32),
+    ) -> Result<World> {
         let mut world = World::default();
         let mut known = Known {
             ids: BTreeMap::new(),
@@ -194,8 +218,8 @@ impl Reader<'_> {
             }
             self.count(&world)?;
         }
-        if let Some(particles) = &file.particles {
-            world.append(&self.particles(&particles.file)?);
+        if let Some(atoms) = atoms {
+            world.append(&look::world(atoms, self.origin));
             self.count(&world)?;
         }
         if world.spheres.is_empty() {

@@ -6,9 +6,7 @@ use toml::Spanned;
 use super::reader::Reader;
 use super::value::Value;
 use crate::error::{Error, Result};
-use crate::look;
-use crate::read::particles::{self, ParticleFormat};
-use crate::scene::World;
+use crate::read::particles::{self, Atom, ParticleFormat};
 use crate::shown::shown;
 
 #[derive(Deserialize)]
@@ -18,7 +16,8 @@ pub(super) struct ParticlesTable {
 }
 
 impl Reader<'_> {
-    pub(super) fn particles(&self, file: &Spanned<Value>) -> Result<World> {
+    /// The atoms of a file of particles.
+    pub(super) fn atoms(&self, file: &Spanned<Value>) -> Result<Vec<Atom>> {
         let name = self.text("file", file)?;
         let path = self.beside(name);
         let Some(format) = ParticleFormat::of(&path) else {
@@ -31,14 +30,13 @@ impl Reader<'_> {
                 )
                 .into());
         };
-        let atoms = format.load(&path).map_err(|error| match error {
+        format.load(&path).map_err(|error| match error {
             // A missing file is an error in the scene. For an invalid one, the place in the file
             // says more than its name here.
             Error::Scene(inner) if inner.place.is_none() => self
                 .wrong(file, inner.to_string(), "named here", inner.help)
                 .into(),
             other => other,
-        })?;
-        Ok(look::world(&atoms))
+        })
     }
 }

@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use serde::de::DeserializeOwned;
 use toml::Spanned;
 
@@ -21,6 +21,8 @@ pub(super) struct Reader<'a> {
     pub(super) text: &'a str,
     /// The parts of the text that were parsed.
     pub(super) pieces: &'a [Piece],
+    /// The point of the file's coordinates that becomes the scene's origin.
+    pub(super) origin: DVec3,
 }
 
 impl Reader<'_> {
@@ -159,8 +161,18 @@ impl Reader<'_> {
 
     /// Three numbers within the range of coordinates.
     pub(super) fn vector(&self, name: &str, value: &Spanned<Value>) -> Result<Vec3> {
-        let vector = self.three(name, value)?;
-        if !limits::COORDINATE.holds_all(vector) {
+        Ok(self.coordinates(name, value)?.as_vec3())
+    }
+
+    /// A point, in the coordinates of the scene.
+    pub(super) fn point(&self, name: &str, value: &Spanned<Value>) -> Result<Vec3> {
+        Ok((self.coordinates(name, value)? - self.origin).as_vec3())
+    }
+
+    /// As [`Reader::vector`], and in the coordinates of the file, not yet rounded.
+    pub(super) fn coordinates(&self, name: &str, value: &Spanned<Value>) -> Result<DVec3> {
+        let vector = self.numbers(name, value)?;
+        if !limits::COORDINATE.holds_all(vector.as_vec3()) {
             return Err(self
                 .wrong(
                     value,
@@ -177,7 +189,12 @@ impl Reader<'_> {
     }
 
     /// Three finite numbers.
-    pub(super) fn three(&self, name: &str, value: &Spanned<Value>) -> Result<Vec3> {
+    fn three(&self, name: &str, value: &Spanned<Value>) -> Result<Vec3> {
+        Ok(self.numbers(name, value)?.as_vec3())
+    }
+
+    /// Three numbers that are finite as 32-bit floats, too, not yet rounded.
+    fn numbers(&self, name: &str, value: &Spanned<Value>) -> Result<DVec3> {
         let numbers = match value.get_ref() {
             Value::List(numbers, None) => numbers,
             Value::List(_, Some(other)) => {
@@ -192,7 +209,7 @@ impl Reader<'_> {
             }
             _ => return Err(self.not_a(name, value, "a list of three numbers")),
         };
-        let Ok([x, y, z]) = <[f64; 3]>::try_from(&numbers[..]) else {
+        let Ok(vector) = <[f64; 3]>::try_from(&numbers[..]).map(DVec3::from_array) else {
             let count = count_of(numbers.len(), "number");
             return Err(self
                 .wrong(
@@ -203,8 +220,7 @@ impl Reader<'_> {
                 )
                 .into());
         };
-        let vector = Vec3::new(x as f32, y as f32, z as f32);
-        if !vector.is_finite() {
+        if !vector.as_vec3().is_finite() {
             return Err(self
                 .wrong(
                     value,

@@ -105,7 +105,7 @@ impl Reader<'_> {
             None => (None, None),
         };
         let sphere = Sphere::new(
-            self.vector("center", &table.center)?,
+            self.point("center", &table.center)?,
             self.number("radius", &table.radius, limits::RADIUS)?,
         );
         let velocity = match &table.velocity {

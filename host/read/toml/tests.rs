@@ -49,6 +49,88 @@ fn a_whole_scene_is_read() {
     assert_eq!(scene.view.expect("a view").vertical_fov, 90.0);
 }
 
+/// Text in which `{x}` stands for the coordinate x of something, moved by `by`.
+fn moved(text: &str, by: f64) -> String {
+    let mut pieces = text.split(['{', '}']);
+    let mut moved = pieces.next().expect("a piece").to_owned();
+    while let (Some(number), Some(text)) = (pieces.next(), pieces.next()) {
+        let number: f64 = number.parse().expect("a coordinate");
+        moved += &format!("{:.3}{text}", number + by);
+    }
+    moved
+}
+
+const SPHERES: &str = "
+[[sphere]]
+center = [{0.123}, {0.7}, {-0.456}]
+radius = 0.5
+
+[[sphere]]
+center = [{0.25}, {-99.8}, {0}]
+radius = 100
+";
+
+const SURROUNDINGS: &str = "
+[camera]
+eye = [{1.1}, {2.3}, {4.7}]
+target = [{0.1}, {0.2}, {-0.3}]
+
+[[light]]
+position = [{2.001}, {5}, {3.3}]
+intensity = [1, 1, 1]
+
+[fog]
+extinction = 0.1
+center = [{0.017}, {0.019}, {0.023}]
+radius = 3
+";
+
+/// A coordinate of 10⁶ is 0.06 off in 32-bit floats.
+#[test]
+fn far_scenes_keep_their_shape() {
+    for text in [SPHERES.to_owned(), format!("{SURROUNDINGS}{SPHERES}")] {
+        let near = read(&moved(&text, 0.0)).expect("a scene");
+        let far = read(&moved(&text, 1e6)).expect("a scene");
+        assert_eq!(near.origin, DVec3::ZERO);
+        assert!(far.origin.distance(DVec3::splat(1e6)) < 1000.0);
+        let shift = (DVec3::splat(1e6) - far.origin).as_vec3();
+        let is_near = |a: Vec3, b: Vec3| (a - b - shift).abs().max_element() < 3e-5;
+        for (a, b) in far.world.spheres.iter().zip(&near.world.spheres) {
+            assert!(is_near(a.center(), b.center()) && a.radius() == b.radius());
+        }
+        assert_eq!(far.view.is_some(), near.view.is_some());
+        let (a, b) = (far.view_or_framed(), near.view_or_framed());
+        assert!(
+            is_near(a.eye, b.eye) && is_near(a.target, b.target),
+            "{a:?} {b:?}"
+        );
+        for (a, b) in far.lights.iter().zip(&near.lights) {
+            assert!(is_near(a.position, b.position), "{a:?} {b:?}");
+        }
+        if let (Some(a), Some(b)) = (far.fog, near.fog) {
+            assert!(is_near(a.medium.center, b.medium.center), "{a:?} {b:?}");
+        }
+    }
+}
+
+/// A sphere that would be out of range around another origin keeps the scene where it is.
+#[test]
+fn the_largest_scenes_stay() {
+    let text = "[camera]
+eye = [9.9e17, 0, 0]
+target = [9.9e17, 0, 1e14]
+
+[[sphere]]
+center = [-9.9e17, 0, 0]
+radius = 1
+";
+    let scene = read(text).expect("a scene");
+    assert_eq!(scene.origin, DVec3::ZERO);
+    assert_eq!(scene.world.spheres[0].center().x, -9.9e17);
+    let without = read(&text.replace("-9.9e17", "9.9e17")).expect("a scene");
+    assert_ne!(without.origin, DVec3::ZERO);
+}
+
 /// Each error, the line on which it must be found, and a word of the message.
 #[test]
 #[expect(clippy::too_many_lines, reason = "one table, an entry a mistake")]

@@ -8,28 +8,18 @@
 use glam::Vec3;
 use spherule_kernel::Sphere;
 
-use crate::scene::{Scene, View};
-
-/// A scene is moved if what it shows is this many times as far from the origin as from the eye.
-const FAR: f32 = 64.0;
+use crate::scene::{Scene, View, origin};
 
 /// The scene, moved so that what its camera looks at is near the origin; `None` if it is near it
 /// already, or if some coordinate would be rounded.
 pub(super) fn rebased(scene: &Scene) -> Option<Scene> {
-    let view = scene.view_or_framed();
-    let distance = view.eye.distance(view.target);
-    let is_far = view.target.abs().max_element() > FAR * distance;
-    if !(is_far && distance > 0.0) {
-        return None;
-    }
-    // Of few bits, so that differences have no more bits than the coordinates have.
-    let unit = distance.log2().ceil().exp2();
-    let origin = (view.target / unit).round() * unit;
+    let origin = origin::of(scene)?;
     let moved = |point: Vec3| {
-        let difference = point - origin;
-        let is_exact = difference.as_dvec3() == point.as_dvec3() - origin.as_dvec3();
-        is_exact.then_some(difference)
+        let difference = point.as_dvec3() - origin;
+        let rounded = difference.as_vec3();
+        (rounded.as_dvec3() == difference).then_some(rounded)
     };
+    let view = scene.view_or_framed();
     let (eye, target) = (moved(view.eye)?, moved(view.target)?);
     // Where a sphere in motion is would be rounded in another place.
     if !scene.world.velocities.is_empty() {
@@ -41,6 +31,7 @@ pub(super) fn rebased(scene: &Scene) -> Option<Scene> {
         .collect();
     let spheres = spheres?;
     let mut scene = scene.clone();
+    scene.origin += origin;
     scene.world.spheres = spheres;
     for light in &mut scene.lights {
         light.position = moved(light.position)?;

@@ -792,7 +792,7 @@ pub const CALLS: &[Call] = &[
         seen(spherule::kernel_module::for_rung(s.draw()))
     }),
     Call::new("spherule::look::world", |s| {
-        seen(spherule::look::world(&s.many()[..]))
+        seen(spherule::look::world(&s.many()[..], s.draw()))
     }),
     Call::new("spherule::random::Random::log_within", |s| {
         seen(spherule::random::Random::log_within(

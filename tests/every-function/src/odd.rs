@@ -25,7 +25,7 @@ use spherule::kernel::accel::traversal::OneByOne;
 use spherule::kernel::cull::cone::{Cone, Sight};
 use spherule::kernel::cull::frustum::{Frustum, Plane};
 use spherule::kernel::filter::Filter;
-use spherule::kernel::glam::{UVec2, UVec3, UVec4, Vec2, Vec3, Vec4};
+use spherule::kernel::glam::{DVec3, UVec2, UVec3, UVec4, Vec2, Vec3, Vec4};
 use spherule::kernel::material::microfacet::{Albedo, RoughMetal};
 use spherule::kernel::material::plastic::Plastic;
 use spherule::kernel::path::caustic::ball::Ball;
@@ -525,6 +525,12 @@ impl Odd for Vec3 {
             1 => s.pick(&[Self::X, Self::NEG_Y, Self::Z, Self::ZERO, Self::ONE]),
             _ => vector,
         }
+    }
+}
+
+impl Odd for DVec3 {
+    fn odd(s: &mut Source) -> Self {
+        Self::new(Odd::odd(s), Odd::odd(s), Odd::odd(s))
     }
 }
 
