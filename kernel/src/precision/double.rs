@@ -56,15 +56,24 @@ impl<L: Lane> Quadratic<L> {
     }
 
     /// Both roots, the smaller first.
+    ///
+    /// 64-bit divisions are slow: one by a, which is the same for all spheres of a ray, and one by
+    /// the product of √Δ and q.
     #[inline(always)]
     #[must_use]
     pub fn roots(&self) -> (L, L) {
-        let zero = self.a.splat(0.0);
-        let root = square_root(self.discriminant);
+        let (zero, one) = (self.a.splat(0.0), self.a.splat(1.0));
         let leaves = self.b.simd_ge(zero);
-        let size = L::select(leaves, self.b + root, root - self.b);
-        let outer = quotient(size, self.a);
-        let inner = L::select(size.simd_gt(zero), quotient(self.c, size), zero);
+        let root = self.discriminant.sqrt();
+        let size = self.b.abs() + root;
+        let divisor = L::select(root.simd_gt(zero), root, one);
+        let over_both = one / (divisor * size);
+        let root = square_root(self.discriminant, root, over_both * size);
+        let over_size = over_both * divisor;
+        let size = self.b.abs() + root;
+        let outer = quotient(size, self.a, one / self.a);
+        let inner = quotient(self.c, size, over_size);
+        let inner = L::select(size.simd_gt(zero), inner, zero);
         (
             L::select(leaves, -outer, inner),
             L::select(leaves, -inner, outer),
@@ -103,20 +112,19 @@ impl Precision for Double {
     }
 }
 
-/// √x for x ≥ 0, with one Newton step; 0 for any other x.
+/// √x for x ≥ 0 from about √x and about 1/√x, by one Newton step; 0 for any other x.
 #[inline(always)]
 #[must_use]
-pub fn square_root<L: Lane>(x: L) -> L {
-    let zero = x.splat(0.0);
-    let root = x.sqrt();
-    let newton = root + (x - root * root) / (root + root);
-    L::select(x.simd_gt(zero), newton, zero)
+pub fn square_root<L: Lane>(x: L, root: L, inverse: L) -> L {
+    let half = x.splat(0.5);
+    let newton = root + (x - root * root) * (inverse * half);
+    L::select(x.simd_gt(x.splat(0.0)), newton, x.splat(0.0))
 }
 
-/// x / y, with one Newton step.
+/// x / y from about 1/y, by one Newton step.
 #[inline(always)]
 #[must_use]
-pub fn quotient<L: Lane>(x: L, y: L) -> L {
-    let quotient = x / y;
-    quotient + (x - quotient * y) / y
+pub fn quotient<L: Lane>(x: L, y: L, inverse: L) -> L {
+    let quotient = x * inverse;
+    quotient + (x - quotient * y) * inverse
 }

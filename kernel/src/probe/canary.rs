@@ -7,6 +7,8 @@ use bytemuck::{Pod, Zeroable};
 use spirv_std::num_traits::Float as _;
 
 use crate::arithmetic::error_free::{split, two_diff, two_product, two_sum};
+#[cfg(any(not(target_arch = "spirv"), feature = "f64"))]
+use crate::precision::double;
 
 /// Two numbers for the canary to compute with.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
@@ -81,10 +83,11 @@ pub struct WideOutcome {
 #[must_use]
 pub fn sing_wide(operands: Operands) -> WideOutcome {
     let (a, b) = (f64::from(operands.a), f64::from(operands.b));
+    let root = a.abs().sqrt();
     WideOutcome {
         sum: a * 1_073_741_824.0 + b,
         product: a * b,
-        quotient: crate::precision::double::quotient(a, b),
-        root: crate::precision::double::square_root(a.abs()),
+        quotient: double::quotient(a, b, 1.0 / b),
+        root: double::square_root(a.abs(), root, 1.0 / root),
     }
 }
