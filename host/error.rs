@@ -107,6 +107,13 @@ pub enum Error {
         purpose: String,
     },
 
+    /// The library that removes noise is not there, or does not work.
+    #[error("Open Image Denoise cannot be used: {reason}")]
+    Denoiser {
+        /// What is missing, or what the library said.
+        reason: String,
+    },
+
     /// The thread pool cannot be started.
     #[error("the thread pool cannot be started: {reason}")]
     Threads {
@@ -252,6 +259,11 @@ impl Error {
             ),
             Self::BufferTooLarge { .. } | Self::OutOfMemory { .. } => {
                 "render fewer spheres or a smaller image, or use `--device cpu`, which uses the host's memory".into()
+            }
+            Self::Denoiser { .. } => {
+                "install version 2 of it (https://www.openimagedenoise.org) where the system looks for libraries, or name \
+                 its library in SPHERULE_OIDN; without `--denoise` the image keeps its noise"
+                    .into()
             }
             Self::Threads { .. } => "start the pool once, before any work, or use rayon's default pool".into(),
             Self::LaunchLimits { .. } => {

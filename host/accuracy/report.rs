@@ -254,12 +254,12 @@ fn step_plot(steps: &[Step]) -> String {
         0.5 * (LEFT + WIDTH - RIGHT),
         HEIGHT - 8.0,
     );
-    let mut rungs: Vec<&str> = steps.iter().map(|step| step.rung).collect();
-    rungs.dedup();
-    for (index, rung) in rungs.iter().enumerate() {
+    let mut all: Vec<&str> = steps.iter().map(Step::series).collect();
+    all.dedup();
+    for (index, series) in all.iter().enumerate() {
         let color = COLORS[(index + 1) % COLORS.len()];
         let mut path = String::new();
-        for step in steps.iter().filter(|step| step.rung == *rung) {
+        for step in steps.iter().filter(|step| step.series() == *series) {
             let (x, y) = place(step);
             let _ = write!(
                 path,
@@ -277,7 +277,7 @@ fn step_plot(steps: &[Step]) -> String {
              <text x=\"{:.1}\" y=\"{:.1}\" style=\"fill:{color}\">{}</text>",
             WIDTH - RIGHT + 8.0,
             TOP + 16.0 * (index + 1) as f64,
-            escape(rung),
+            escape(series),
         );
     }
     svg + "</svg>"

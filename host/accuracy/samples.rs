@@ -9,8 +9,9 @@ use spherule_kernel::color::luminance;
 use crate::device::Device;
 use crate::error::Result;
 use crate::film::Image;
+use crate::film::denoise::Denoiser;
 use crate::film::flip::mean_flip;
-use crate::render::{Progress, Settings, render};
+use crate::render::{Progress, Rendered, Settings, render};
 use crate::scene::Scene;
 use crate::scene::limits::MAX_SAMPLES;
 
@@ -28,16 +29,57 @@ const SHARE: f64 = 0.7;
 pub struct Step {
     /// The rung.
     pub rung: &'static str,
+    /// Whether the image was denoised, which makes it biased.
+    pub denoised: bool,
     /// Samples a pixel.
     pub samples: u32,
-    /// The time of tracing, in milliseconds.
+    /// The time of tracing, and of denoising, in milliseconds.
     pub milliseconds: f64,
     /// The root mean square error of the luminance, over the mean luminance of the reference.
     pub error: f64,
-    /// The render's own estimate of the error, without a reference.
+    /// The render's own estimate of the error, without a reference; NaN for a denoised image.
     pub estimate: f64,
     /// The mean ꟻLIP against the reference.
     pub flip: f64,
+}
+
+impl Step {
+    fn of(rendered: &Rendered, rung: Rung, samples: u32, reference: &Image) -> Self {
+        Self {
+            rung: rung.name(),
+            denoised: false,
+            samples,
+            milliseconds: rendered.timings.trace.as_secs_f64() * 1e3,
+            error: error(&rendered.image, reference),
+            estimate: rendered.reached.map_or(0.0, |reached| reached.noise),
+            flip: mean_flip(reference, &rendered.image).unwrap_or(f64::NAN),
+        }
+    }
+
+    /// The step of this image without its noise.
+    fn denoised(
+        self,
+        mut rendered: Rendered,
+        denoiser: &mut Denoiser,
+        reference: &Image,
+    ) -> Result<Self> {
+        let started = Instant::now();
+        denoiser.denoise(&mut rendered.image)?;
+        Ok(Self {
+            denoised: true,
+            milliseconds: self.milliseconds + started.elapsed().as_secs_f64() * 1e3,
+            error: error(&rendered.image, reference),
+            estimate: f64::NAN,
+            flip: mean_flip(reference, &rendered.image).unwrap_or(f64::NAN),
+            ..self
+        })
+    }
+
+    /// What the steps of one line of a plot have in common: the rung, or that they are denoised.
+    #[must_use]
+    pub fn series(&self) -> &'static str {
+        if self.denoised { "denoised" } else { self.rung }
+    }
 }
 
 /// How many samples a pixel [`measure`] takes in all.
@@ -53,6 +95,19 @@ fn of_reference(most: u32) -> u32 {
     most.saturating_mul(REFERENCE).min(MAX_SAMPLES)
 }
 
+/// What [`measure`] does, and how long it may take.
+pub struct Plan {
+    /// The most samples of a step.
+    pub most: u32,
+    /// With a denoiser the images of the first rung are also measured after it has removed their
+    /// noise.
+    pub denoiser: Option<Denoiser>,
+    /// The time that compiling a pipeline took before, if one was compiled.
+    pub compiling: Duration,
+    /// When to be done, with fewer samples if need be.
+    pub until: Option<Instant>,
+}
+
 /// The steps, and the samples of their reference.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Convergence {
@@ -64,25 +119,28 @@ pub struct Convergence {
     pub is_cut: bool,
 }
 
-/// Renders `scene` on `device` on each of `rungs` with 1, 2, 4, … up to `most` samples. The
-/// reference has another seed and sixteen times as many samples, on the highest of the rungs. All
-/// have fewer samples if they would not be done at `until`. If the reference has fewer than eight
+/// Renders `scene` on `device` on each of `rungs` with 1, 2, 4, … samples, up to the plan's most.
+/// The reference has another seed and sixteen times as many samples, on the highest of the rungs.
+/// All have fewer samples if they would not be done in time. If the reference has fewer than eight
 /// samples by then, there are no steps, because noise would be measured against noise; otherwise
-/// the first step is always measured. `compiling` is the time that compiling a pipeline took
-/// before, if one was compiled.
+/// the first step is always measured.
 ///
 /// # Errors
 ///
-/// As [`render`].
+/// As [`render`], and as [`Denoiser::denoise`].
 pub fn measure(
     device: &Device,
     rungs: &[Rung],
     scene: &Scene,
-    most: u32,
-    compiling: Duration,
-    until: Option<Instant>,
+    plan: Plan,
     progress: Progress<'_>,
 ) -> Result<Convergence> {
+    let Plan {
+        most,
+        mut denoiser,
+        compiling,
+        until,
+    } = plan;
     let left = || until.map(|until| until.saturating_duration_since(Instant::now()));
     let all = in_all(rungs.len(), most) as f64;
     let mut done = 0.0;
@@ -109,6 +167,7 @@ pub fn measure(
     let mut steps = Vec::new();
     let mut is_cut = false;
     for rung in rungs {
+        let mut clean = Vec::new();
         let settings = Settings {
             rung: *rung,
             ..Settings::default()
@@ -133,19 +192,18 @@ pub fn measure(
             let compile = rendered.timings.compile;
             expected = started.elapsed().saturating_sub(compile).saturating_mul(2);
             done += f64::from(samples);
-            steps.push(Step {
-                rung: rung.name(),
-                samples,
-                milliseconds: rendered.timings.trace.as_secs_f64() * 1e3,
-                error: error(&rendered.image, &reference),
-                estimate: rendered.reached.map_or(0.0, |reached| reached.noise),
-                flip: mean_flip(&reference, &rendered.image).unwrap_or(f64::NAN),
-            });
+            let step = Step::of(&rendered, *rung, samples, &reference);
+            steps.push(step);
+            if let Some(denoiser) = &mut denoiser {
+                clean.push(step.denoised(rendered, denoiser, &reference)?);
+            }
             let Some(next) = samples.checked_mul(2) else {
                 break;
             };
             samples = next;
         }
+        steps.append(&mut clean);
+        denoiser = None;
     }
     Ok(Convergence {
         steps,

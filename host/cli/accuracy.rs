@@ -15,11 +15,12 @@ use crate::accuracy::families::Family;
 use crate::accuracy::frames::{self, Frame};
 use crate::accuracy::measure::{Escalation, RungErrors, intersect_all, judge, self_hits};
 use crate::accuracy::price::{self, Price};
-use crate::accuracy::samples::{self, Step};
+use crate::accuracy::samples::{self, Plan, Step};
 use crate::accuracy::{report, scene_rays};
 use crate::device::Device;
 use crate::device::canary::Canary;
 use crate::error::{Result, SceneError};
+use crate::film::denoise::Denoiser;
 use crate::memory;
 use crate::plural::count_of;
 use crate::render::fit::{fit, probe};
@@ -234,7 +235,8 @@ fn find(
                 None => Some(started + Duration::from_secs_f64(arguments.time_limit)),
                 Some(_) => None,
             };
-            find_samples(scene, device, rungs, until, &progress)
+            let denoiser = arguments.denoise.then(Denoiser::open).transpose()?;
+            find_samples(scene, device, rungs, denoiser, until, &progress)
         }
         (Some(scene), Some(Subject::Scene(path))) => {
             let samples = scene_rays::sample(&scene, SEED, rays)?;
@@ -263,6 +265,7 @@ fn find_samples(
     mut scene: Scene,
     device: &Device,
     rungs: &[Rung],
+    denoiser: Option<Denoiser>,
     until: Option<Instant>,
     progress: Progress<'_>,
 ) -> Result<Found> {
@@ -280,15 +283,13 @@ fn find_samples(
             scene.width, scene.height, whole[0], whole[1],
         ));
     }
-    let measured = samples::measure(
-        device,
-        &rungs,
-        &scene,
-        MOST_SAMPLES,
+    let plan = Plan {
+        most: MOST_SAMPLES,
+        denoiser,
         compiling,
         until,
-        progress,
-    )?;
+    };
+    let measured = samples::measure(device, &rungs, &scene, plan, progress)?;
     Ok(Found {
         samples_image: Some([scene.width, scene.height]),
         reference_samples: Some(measured.reference),
@@ -394,12 +395,12 @@ fn steps_table(report: &AccuracyReport) -> String {
         "error² × ms",
     );
     for (index, step) in report.samples.iter().enumerate() {
-        let is_first = index == 0 || report.samples[index - 1].rung != step.rung;
+        let is_first = index == 0 || report.samples[index - 1].series() != step.series();
         // Writing to a String cannot fail.
         let _ = writeln!(
             text,
             "{:12} {:>8} {:>14.3} {:>8.3} % {:>10} {:>10.5} {:>12.3e}",
-            if is_first { step.rung } else { "" },
+            if is_first { step.series() } else { "" },
             step.samples,
             step.milliseconds,
             100.0 * step.error,
@@ -417,6 +418,11 @@ fn steps_table(report: &AccuracyReport) -> String {
          estimate: the render's own, an upper one: it takes the samples for independent, though they are stratified.\n\
          error² × ms is constant if the error falls as 1/√N, and falls if the error falls faster.\n",
     );
+    if report.samples.iter().any(|step| step.denoised) {
+        text.push_str(
+            "denoised: the images of the first rung without their noise, which are biased: their error need not go to zero.\n",
+        );
+    }
     text
 }
 

@@ -49,7 +49,7 @@ pub(super) enum Command {
 #[command(after_help = "Ctrl-C writes the picture as far as it is.\n\
     Exit codes: 0 done, 1 the render or the check failed, 2 the input is wrong, 128 and a signal's number if that ended it.\n\
     SPHERULE_LOG=debug logs what happens; RAYON_NUM_THREADS=N sets the number of the CPU's threads, \
-    SPHERULE_CPU=plain|avx2|avx512 their vector instructions.")]
+    SPHERULE_CPU=plain|avx2|avx512 their vector instructions; SPHERULE_OIDN=FILE is Open Image Denoise's library.")]
 pub(super) struct RenderArguments {
     #[arg(help = format!("The {}", read::inputs()))]
     pub(super) input: PathBuf,
@@ -110,10 +110,15 @@ pub(super) struct RenderArguments {
     #[arg(long, value_name = "TARGET", value_parser = positive)]
     pub(super) noise: Option<f64>,
 
+    /// Remove the noise by Open Image Denoise 2, if its library is here: the image is smooth after
+    /// few samples, but biased, and says so
+    #[arg(long)]
+    pub(super) denoise: bool,
+
     /// Render on the GPU and on the CPU and compare: fail if more than 0.1 % of the pixels differ
     /// by more than 2/255. Of images of light paths, more may differ, up to 5 %, but no region by
     /// more than chance
-    #[arg(long, conflicts_with_all = ["time_limit", "noise"])]
+    #[arg(long, conflicts_with_all = ["time_limit", "noise", "denoise"])]
     pub(super) check: bool,
 
     /// Write timings and counts as JSON; - writes to stdout
@@ -173,6 +178,10 @@ pub(super) struct AccuracyArguments {
     /// samples; where they are too few to judge by, nothing is measured, and the exit code is 1
     #[arg(long, value_name = "SECONDS", value_parser = positive, default_value = "60", conflicts_with_all = ["size", "scene"], requires = "samples")]
     pub(super) time_limit: f64,
+
+    /// With --samples: also measure the images of the first rung denoised, as by `render --denoise`
+    #[arg(long, requires = "samples")]
+    pub(super) denoise: bool,
 
     /// Write a report to look at: one HTML page with its plots in it
     #[arg(short, long, value_name = "REPORT.html")]

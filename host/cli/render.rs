@@ -19,6 +19,7 @@ use crate::device::{Device, DeviceChoice};
 use crate::error::{Error, Result};
 use crate::film::agreement::{Agreement, Compared};
 use crate::film::compare::{Comparison, Tolerance};
+use crate::film::denoise::Denoiser;
 use crate::plural::count_of;
 use crate::read::text::uncompressed;
 use crate::render::paths::{Reached, StoppedBy};
@@ -61,6 +62,8 @@ struct Seconds {
     compile: f64,
     trace: f64,
     readback: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    denoise: Option<f64>,
     encode: f64,
     total: f64,
 }
@@ -79,6 +82,8 @@ struct Check {
 struct Took {
     load: Duration,
     opening: Duration,
+    /// If the image was denoised.
+    denoise: Option<Duration>,
     encode: Duration,
     total: Duration,
 }
@@ -118,6 +123,7 @@ impl Stats {
                 setup: (took.opening + timings.setup).as_secs_f64(),
                 trace,
                 readback: timings.readback.as_secs_f64(),
+                denoise: took.denoise.map(|denoise| denoise.as_secs_f64()),
                 encode: took.encode.as_secs_f64(),
                 total: took.total.as_secs_f64(),
             },
@@ -165,6 +171,7 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<ExitCode> {
     let (mut device, why) = choose_device(arguments, &scene, early)?;
     let opening = started.elapsed() - load;
     let other = other_device(arguments, &device)?;
+    let denoiser = arguments.denoise.then(Denoiser::open).transpose()?;
     let settings = choose_settings(arguments, &scene, &device, &why);
 
     // An image that a signal or a time limit cuts has opacities.
@@ -172,10 +179,15 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<ExitCode> {
     let room = ReservedMemory::reserve(format, scene.width, scene.height, true)?;
     // From here on the first signal ends the tracing, and the picture is kept.
     let graceful = Graceful::new();
-    let rendered = render_or_fall_back(arguments, &scene, settings, &mut device)?;
+    let mut rendered = render_or_fall_back(arguments, &scene, settings, &mut device)?;
     if let Some(code) = code_for_nothing(&rendered) {
         return Ok(code);
     }
+    // If that fails, the image is written as it is.
+    let denoised = match denoiser {
+        Some(denoiser) => denoise(arguments, denoiser, &mut rendered),
+        None => Ok(None),
+    };
     let encoding = Instant::now();
     // What is rendered is written before a signal ends the command.
     rendered.image.save_to(&outputs.image, room)?;
@@ -187,6 +199,7 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<ExitCode> {
     let took = Took {
         load,
         opening,
+        denoise: denoised.as_ref().ok().copied().flatten(),
         encode,
         total: started.elapsed(),
     };
@@ -206,6 +219,7 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<ExitCode> {
     if let Some(code) = interrupt::exit_code() {
         return Ok(code);
     }
+    denoised?;
     Ok(if passed {
         ExitCode::SUCCESS
     } else {
@@ -369,6 +383,29 @@ fn code_for_nothing(rendered: &Rendered) -> Option<ExitCode> {
         "the time was up before the first pixel was done: nothing is written; give a longer --time-limit",
     );
     Some(ExitCode::FAILURE)
+}
+
+/// Removes the noise of the samples, and says so. Returns how long that took, if there was any.
+fn denoise(
+    arguments: &RenderArguments,
+    mut denoiser: Denoiser,
+    rendered: &mut Rendered,
+) -> Result<Option<Duration>> {
+    let pixels = u64::from(rendered.image.width()) * u64::from(rendered.image.height());
+    let why_not = match rendered.reached {
+        None => "nothing in this image is sampled: --denoise has no effect",
+        Some(_) if rendered.traced < pixels => "not denoised: some pixels have no sample yet",
+        Some(_) => {
+            let started = Instant::now();
+            denoiser.denoise(&mut rendered.image)?;
+            let took = started.elapsed();
+            let text = format!("denoised by {} in {}", denoiser.name(), human(took));
+            say(arguments, &text);
+            return Ok(Some(took));
+        }
+    };
+    say(arguments, why_not);
+    Ok(None)
 }
 
 fn say_what_is_written(

@@ -6,9 +6,12 @@
 //! | [`compare`] | the difference between two images |
 //! | [`agreement`] | whether that of light paths is chance |
 //! | [`flip`] | that difference as somebody sees it |
+//! | `denoise` | removes noise, by a library that the machine may have |
 
 pub mod agreement;
 pub mod compare;
+#[cfg(feature = "denoise")]
+pub mod denoise;
 pub mod encode;
 pub mod flip;
 
