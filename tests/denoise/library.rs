@@ -1,5 +1,5 @@
-//! A stand-in for Open Image Denoise's library, which the test compiles: it checks how it is called,
-//! and halves every channel. `STAND_IN` in the environment makes it fail in one way.
+//! A stand-in for Open Image Denoise's library, which the test compiles: it checks how it is
+//! called, and halves every channel. `STAND_IN` in the environment makes it fail in one way.
 
 use std::ffi::{CStr, c_char, c_int, c_void};
 use std::ptr;

@@ -1,6 +1,6 @@
-//! Open Image Denoise is called as it wants to be, and what it says reaches the user. It need not be
-//! here: a stand-in for its library is compiled. Where `SPHERULE_OIDN` names the library itself, it
-//! is tested, too.
+//! Open Image Denoise is called as it wants to be, and what it says reaches the user. It need not
+//! be here: a stand-in for its library is compiled. Where `SPHERULE_OIDN` names the library itself,
+//! it is tested, too.
 
 use std::path::{Path, PathBuf};
 use std::process;
