@@ -3,7 +3,7 @@
 
 use glam::Vec3;
 use spherule::Scene;
-use spherule::accel::Acceleration;
+use spherule::accel::{Acceleration, build_still};
 use spherule::accuracy::cases::catalogue;
 use spherule::accuracy::families::Family;
 use spherule::accuracy::oracle::Intersection;
@@ -11,10 +11,10 @@ use spherule::bench::rays::{Kind, RaySets};
 use spherule::bench::scenes;
 use spherule::bench::verify::verify;
 use spherule::device::Device;
-use spherule::kernel::accel::brute::nearest_hit_in;
+use spherule::kernel::accel::brute::{MovingSpheres, is_occluded, nearest_hit_in};
 use spherule::kernel::accel::node::Node;
-use spherule::kernel::accel::walk::nearest_hit_in_tree;
-use spherule::kernel::{Material, Pixel, Ray, Rung, Shading, Sphere};
+use spherule::kernel::accel::walk::{is_occluded_in_tree, nearest_hit_in_tree};
+use spherule::kernel::{Effects, Hit, Material, Pixel, Ray, Rung, Shading, Sphere};
 use spherule::render::pace::Pace;
 use spherule::render::{QUIET, Settings, cpu, whole_image};
 use spherule::scene::World;
@@ -271,6 +271,46 @@ fn tiles_take_the_first_of_equals() {
                 let red = count(|color| color.x > 0.0);
                 assert_eq!(red, 0, "{width} × {height} on {}", gpu.name());
             }
+        }
+    }
+}
+
+/// A ray that asks what is in its way to a lamp passes over the lamp, wherever rounding lets that
+/// begin; and over nothing else.
+#[test]
+fn rays_pass_over_the_sphere_that_they_go_to() {
+    let mut spheres: Vec<Sphere> = (0..40)
+        .map(|index| Sphere::new(Vec3::new(3.0 * index as f32, 0.0, 0.0), 1.0))
+        .collect();
+    let nodes = build_still(&spheres, 1).expect("a tree");
+    spheres = nodes.sort(&spheres);
+    let lamp = spheres.iter().position(|sphere| sphere.center().x == 30.0);
+    let lamp = lamp.expect("the lamp") as u32;
+    // From above, a little into the lamp.
+    let free = Ray::within(Vec3::new(30.0, 5.0, 0.0), Vec3::NEG_Y, 0.0, 4.001);
+    // The same from far away, through its neighbour.
+    let blocked = Ray::within(Vec3::new(40.0, 0.0, 0.0), Vec3::NEG_X, 0.0, 9.001);
+    for rung in Rung::ALL.map(Rung::to_u32) {
+        for (ray, target, expected) in [
+            (free, lamp, false),
+            (free, Hit::NONE_SPHERE, true),
+            (free, lamp ^ 1, true),
+            (blocked, lamp, true),
+        ] {
+            let moving = MovingSpheres {
+                spheres: &spheres,
+                velocities: &[],
+                time: 0.0,
+                effects: Effects::SOFT_SHADOWS,
+                left: Hit::NONE_SPHERE,
+                target,
+            };
+            assert_eq!(is_occluded(rung, &ray, &moving), expected);
+            let tree = nodes.nodes.tree();
+            assert_eq!(is_occluded_in_tree(rung, &ray, tree, &moving), expected);
+            // Only rays that ask for any hit pass over it.
+            assert!(nearest_hit_in(rung, &free, &moving, 0, u32::MAX).is_some());
+            assert!(nearest_hit_in_tree(rung, &free, tree, &moving).is_some());
         }
     }
 }

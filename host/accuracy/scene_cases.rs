@@ -12,8 +12,10 @@ use super::measure::intersect_all;
 use super::oracle;
 use crate::device::Device;
 use crate::error::Result;
+use crate::film::agreement::Agreement;
 use crate::random::Random;
 use crate::read::toml;
+use crate::render::{QUIET, Settings, render};
 
 /// A hard case that is judged by its own function.
 #[derive(Clone, Copy, Debug)]
@@ -101,7 +103,78 @@ pub const SCENE_CASES: &[SceneCase] = &[
         promised_by: CERTIFIED,
         objection: shadow_query,
     },
+    SceneCase {
+        number: 43,
+        name: "light of lamps, by tests of every sphere and by a tree",
+        promised_by: ALL,
+        objection: light_of_lamps,
+    },
 ];
+
+/// Two lamps above balls on a ground, without what makes the balls.
+const LAMPS: &str = "
+[image]
+width = 96
+height = 64
+samples = 16
+max_bounces = 1
+
+[camera]
+eye = [0, 3.5, 8]
+target = [0, 0.3, 0]
+
+[materials.warm]
+kind = \"emissive\"
+color = [120, 90, 60]
+
+[materials.cold]
+kind = \"emissive\"
+color = [30, 45, 70]
+
+[[sphere]]
+center = [0, -200, 0]
+radius = 200
+
+[[sphere]]
+center = [-3, 4, 1]
+radius = 0.3
+material = \"warm\"
+
+[[sphere]]
+center = [3.5, 3, 2]
+radius = 0.3
+material = \"cold\"
+";
+
+/// The light of lamps with an extent, of six spheres and of many, is that of the CPU on certified.
+fn light_of_lamps(device: &Device, rung: Rung) -> Result<Option<String>> {
+    for balls in [3, 30] {
+        let mut random = Random::new(43);
+        let mut text = LAMPS.to_owned();
+        for _ in 0..balls {
+            let (x, z) = (random.within(-4.0, 4.0), random.within(-4.0, 4.0));
+            text += &format!("[[sphere]]\ncenter = [{x}, 0.25, {z}]\nradius = 0.25\n");
+        }
+        let scene = toml::parse(std::path::Path::new("lamps.toml"), text)?;
+        let image = |device: &Device, rung| {
+            let settings = Settings {
+                rung,
+                ..Settings::default()
+            };
+            render(&scene, settings, device, QUIET).map(|rendered| rendered.image)
+        };
+        let right = image(&Device::Cpu, Rung::Certified)?;
+        let found = image(device, rung)?;
+        if let Some(agreement) = Agreement::of(&found, &right)
+            && !agreement.is_within()
+        {
+            let worst = agreement.worst;
+            let why = format!("{balls} balls: off by {:.1} standard errors", worst.errors);
+            return Ok(Some(why));
+        }
+    }
+    Ok(None)
+}
 
 const AHEAD: (Vec3, Vec3) = (Vec3::new(0.0, 0.0, 5.0), Vec3::NEG_Z);
 

@@ -532,6 +532,7 @@ mod tests {
                             time: 0.0,
                             effects: Effects::NONE,
                             left: lefts[index],
+                            target: Hit::NONE_SPHERE,
                         };
                         nearest_hit_in(rung.to_u32(), &rays[index], &resting, 0, u32::MAX)
                     };

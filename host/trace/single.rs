@@ -97,6 +97,7 @@ impl<'a> Single<'a> {
                 time: 0.0,
                 effects: Effects::NONE,
                 left: left(lefts, index),
+                target: Hit::NONE_SPHERE,
             };
             put(index, self.trace_one::<ANY, _>(ray, &resting));
         }

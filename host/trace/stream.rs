@@ -495,6 +495,7 @@ mod tests {
                 time: 0.0,
                 effects: Effects::default(),
                 left: Hit::NONE_SPHERE,
+                target: Hit::NONE_SPHERE,
             };
             let name = format!("{} spheres, a heap: {is_heap}", spheres.len());
             for rung in Rung::ALL {
@@ -507,6 +508,7 @@ mod tests {
                 for ((ray, left), (nearest, any)) in rays.iter().zip(&lefts).zip(&found) {
                     let moving = MovingSpheres {
                         left: *left,
+                        target: Hit::NONE_SPHERE,
                         ..moving
                     };
                     let expected = nearest_hit_in(code, ray, &moving, 0, u32::MAX);

@@ -393,6 +393,7 @@ mod tests {
                 time: 1.0,
                 effects: Effects::MOTION_BLUR,
                 left: Hit::NONE_SPHERE,
+                target: Hit::NONE_SPHERE,
             };
             // SAFETY: the indices are below the count.
             (0..moving.count())
@@ -406,6 +407,7 @@ mod tests {
             time: 1.0,
             effects: Effects::MOTION_BLUR,
             left: Hit::NONE_SPHERE,
+            target: Hit::NONE_SPHERE,
         };
         compare(tree.nodes.tree(), &moving, &rays(&mut random));
         let resting = MovingSpheres {

@@ -29,6 +29,24 @@ pub trait Spheres {
         let _ = index;
         false
     }
+
+    /// Whether rays that ask for any hit pass over the sphere with this index: see
+    /// [`MovingSpheres::target`].
+    #[inline]
+    fn is_passed(&self, index: u32) -> bool {
+        self.is_left(index)
+    }
+}
+
+/// Whether a ray passes over the sphere with this index: one that asks for any hit, or one that
+/// asks for the nearest.
+#[inline]
+pub(super) fn passes_over<const ANY: bool, S: Spheres + ?Sized>(spheres: &S, index: u32) -> bool {
+    if ANY {
+        spheres.is_passed(index)
+    } else {
+        spheres.is_left(index)
+    }
 }
 
 impl Spheres for [Sphere] {
@@ -58,6 +76,11 @@ pub struct MovingSpheres<'a> {
     /// The index of the sphere that a ray leaves, over which it passes: rounding would decide
     /// whether it meets it where it starts. [`Hit::NONE_SPHERE`] for a ray that leaves none.
     pub left: u32,
+    /// The index of the sphere up to which a ray goes that asks for any hit, and over which it
+    /// passes, too. Compilers for GPUs do not round an intersection alike wherever it stands, so
+    /// that the sphere might begin before the ray ends there. [`Hit::NONE_SPHERE`] for a ray that
+    /// goes to none.
+    pub target: u32,
 }
 
 impl MovingSpheres<'_> {
@@ -96,6 +119,12 @@ impl Spheres for MovingSpheres<'_> {
     #[inline]
     fn is_left(&self, index: u32) -> bool {
         index == self.left
+    }
+
+    #[inline]
+    fn is_passed(&self, index: u32) -> bool {
+        let to_lamps = Effects::SOFT_SHADOWS.and(Effects::CAUSTICS);
+        (index == self.left) | (self.effects.any(to_lamps) && index == self.target)
     }
 }
 
@@ -172,7 +201,7 @@ pub fn is_occluded<S: Spheres + ?Sized>(rung: u32, ray: &Ray, spheres: &S) -> bo
     while (index < spheres.count()) & !occluded {
         // SAFETY: `index` is below the number of spheres.
         let sphere = unsafe { spheres.sphere(index) };
-        occluded = (intersect(rung, sphere, ray) < ray.t_max) & !spheres.is_left(index);
+        occluded = (intersect(rung, sphere, ray) < ray.t_max) & !spheres.is_passed(index);
         index += 1;
     }
     occluded

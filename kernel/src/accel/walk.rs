@@ -16,7 +16,7 @@ use core::mem::MaybeUninit;
 use glam::{UVec2, UVec4};
 use spirv_std::arch::IndexUnchecked;
 
-use super::brute::Spheres;
+use super::brute::{Spheres, passes_over};
 use super::node::{Extent, Node, Tree, point};
 use super::slabs::{FIRST_OF_FOUR, Slabs, load};
 use crate::cull::bounds::Line;
@@ -192,7 +192,10 @@ fn walk<const ANY: bool, S: Spheres + ?Sized>(
                 let indices = [sphere_at(links, one, count), sphere_at(links, two, count)];
                 // SAFETY: both are below the number of spheres.
                 let pair = unsafe { [spheres.sphere(indices[0]), spheres.sphere(indices[1])] };
-                let are_left = [spheres.is_left(indices[0]), spheres.is_left(indices[1])];
+                let are_left = [
+                    passes_over::<ANY, S>(spheres, indices[0]),
+                    passes_over::<ANY, S>(spheres, indices[1]),
+                ];
                 if is_lazy {
                     let [first, second] = [line.bounds(pair[0]), line.bounds(pair[1])];
                     if first.hits & (first.high < low) & !are_left[0] {

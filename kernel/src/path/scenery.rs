@@ -53,6 +53,7 @@ impl<T: Traversal> Scenery<'_, T> {
             time,
             effects: self.effects,
             left,
+            target: Hit::NONE_SPHERE,
         }
     }
 
@@ -87,10 +88,14 @@ impl<T: Traversal> Scenery<'_, T> {
         material_of(index, self.material_ids, self.materials)
     }
 
-    /// Whether anything but the sphere with the index `left` is in the way of a ray.
+    /// Whether anything is in the way of a ray from the sphere with the index `left` up to the one
+    /// with the index `target`.
     #[inline]
-    pub(super) fn is_blocked(&self, ray: &Ray, left: u32, time: f32) -> bool {
-        let spheres = self.spheres_at(time, left);
+    pub(super) fn is_blocked(&self, ray: &Ray, left: u32, target: u32, time: f32) -> bool {
+        let spheres = MovingSpheres {
+            target,
+            ..self.spheres_at(time, left)
+        };
         self.traversal.is_occluded(ray, &spheres)
     }
 }

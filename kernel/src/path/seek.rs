@@ -78,7 +78,7 @@ pub(super) fn light_from_seeking<T: Traversal>(
     let direction = found.direction;
     let mut shadow = Shadow::towards(place, direction);
     if scenery.effects.any(Effects::SOFT_SHADOWS) && found.is_sphere {
-        shadow.lamp = lamp.sphere;
+        (shadow.target, shadow.lamp) = (lamp.sphere, lamp.sphere);
     } else {
         shadow = shadow.up_to(found.distance);
     }

@@ -21,8 +21,10 @@ pub struct Shadow {
     pub ray: Ray,
     /// The index of the sphere that the ray leaves, and does not meet again.
     pub left: u32,
-    /// The index of the lamp's sphere up to which the ray goes; [`Hit::NONE_SPHERE`] if the ray's
-    /// end says up to where.
+    /// The index of the lamp's sphere up to which the ray goes; [`Hit::NONE_SPHERE`] for another
+    /// light.
+    pub target: u32,
+    /// The same, as long as the ray's end does not say where that sphere begins.
     pub lamp: u32,
     /// The light; zero if there is none, and nothing to ask.
     pub light: Vec3,
@@ -41,6 +43,7 @@ impl Shadow {
             t_max: 0.0,
         },
         left: Hit::NONE_SPHERE,
+        target: Hit::NONE_SPHERE,
         lamp: Hit::NONE_SPHERE,
         light: Vec3::ZERO,
         scatterings: 1,

@@ -171,8 +171,7 @@ fn receive_at_once<T: Traversal>(scenery: &Scenery<'_, T>, path: &mut Path, shad
     } else {
         shadow.up_to_lamp(scenery, path.time)
     };
-    let spheres = scenery.spheres_at(path.time, shadow.left);
-    if shadow.is_some() && !scenery.traversal.is_occluded(&shadow.ray, &spheres) {
+    if shadow.is_some() && !scenery.is_blocked(&shadow.ray, shadow.left, shadow.target, path.time) {
         path.receive(scenery.effects, shadow.light, shadow.scatterings);
     }
 }

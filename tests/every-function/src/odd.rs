@@ -721,11 +721,12 @@ impl Odd for Material {
 
 /// Owns what [`MovingSpheres`] borrow.
 #[derive(Debug)]
-pub struct OddMovingSpheres(Vec<Sphere>, Vec<Vec4>, f32, Effects, u32);
+pub struct OddMovingSpheres(Vec<Sphere>, Vec<Vec4>, f32, Effects, u32, u32);
 
 impl Odd for OddMovingSpheres {
     fn odd(s: &mut Source) -> Self {
         Self(
+            Odd::odd(s),
             Odd::odd(s),
             Odd::odd(s),
             Odd::odd(s),
@@ -744,6 +745,7 @@ impl OddMovingSpheres {
             time: self.2,
             effects: self.3,
             left: self.4,
+            target: self.5,
         }
     }
 }

@@ -36,6 +36,8 @@ struct End {
     normal: Vec3,
     /// The glowing sphere.
     lamp: Sphere,
+    /// Its index.
+    index: u32,
     /// Radiance; of a light without extent, intensity or irradiance.
     radiance: Vec3,
     /// Per area or solid angle; of a light without extent, the probability of choosing it. Zero if
@@ -195,6 +197,7 @@ fn choose_end<T: Traversal>(
         at: lamp.position,
         normal: Vec3::ZERO,
         lamp: ball,
+        index: Hit::NONE_SPHERE,
         radiance: lamp.color,
         density: lamp.probability,
         is_sun: lamp.kind == Light::SUN,
@@ -219,6 +222,7 @@ fn choose_end<T: Traversal>(
         );
         end.at = sphere.center() + end.normal * sphere.radius();
         end.lamp = sphere;
+        end.index = lamp.sphere;
         end.density *= if height > 0.0 {
             lamp_density(sphere, ball, end.normal)
         } else {
@@ -300,7 +304,8 @@ fn pass<T: Traversal>(
         }
         let ray = Ray::within(point, direction, f32::MIN_POSITIVE, distance);
         let is_within = (met == 0) & (place.exit(direction) < distance);
-        if is_within || scenery.is_blocked(&ray, left, time) {
+        let target = if is_last { end.index } else { index };
+        if is_within || scenery.is_blocked(&ray, left, target, time) {
             return BLOCKED;
         }
         let is_outside = is_last | (met == 0);
