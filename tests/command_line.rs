@@ -612,17 +612,26 @@ fn accuracy_writes_a_table_a_page_and_numbers() {
 #[test]
 fn auto_precision_says_what_it_chose_and_why() {
     let dir = temporary();
-    for (scene, size, rung) in [
-        ("scenes/1crn.pdb", "32x18", "robust"),
+    for (scene, size, tolerance, rung) in [
+        ("scenes/1crn.pdb", "32x18", "0.1", "robust"),
+        ("scenes/glass-marble.toml", "960x540", "0.1", "double"),
         // A pixel of a small image tolerates a larger error.
-        ("scenes/marble-on-earth.toml", "32x18", "double"),
-        ("scenes/marble-on-earth.toml", "960x540", "certified"),
+        ("scenes/glass-marble.toml", "96x54", "0.1", "robust"),
+        ("scenes/marble-on-earth.toml", "960x540", "0.1", "double"),
+        (
+            "scenes/marble-on-earth.toml",
+            "960x540",
+            "1.0e-4",
+            "certified",
+        ),
     ] {
         render(scene, size, &dir.path().join("out.png"))
+            .args(["--samples", "1", "--tolerance", tolerance])
             .assert()
             .success()
             .stderr(
-                contains(format!("precision {rung} (within ")).and(contains("0.1 are allowed")),
+                contains(format!("precision {rung} (within "))
+                    .and(contains(format!("{tolerance} are allowed"))),
             );
     }
 }
