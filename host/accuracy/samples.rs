@@ -96,6 +96,7 @@ fn of_reference(most: u32) -> u32 {
 }
 
 /// What [`measure`] does, and how long it may take.
+#[derive(Debug)]
 pub struct Plan {
     /// The most samples of a step.
     pub most: u32,

@@ -7,6 +7,7 @@
 //! A denoised image is biased: it shows what is likely, not what was computed. Files say so.
 
 use std::ffi::{CStr, OsString, c_char, c_int, c_void};
+use std::fmt;
 use std::ptr;
 
 use glam::Vec3;
@@ -220,6 +221,12 @@ impl Denoiser {
             };
             (code, text)
         }
+    }
+}
+
+impl fmt::Debug for Denoiser {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_tuple("Denoiser").field(&self.name()).finish()
     }
 }
 

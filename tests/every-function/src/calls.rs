@@ -310,6 +310,9 @@ pub const CALLS: &[Call] = &[
             &s.text(),
         ))
     }),
+    Call::new("spherule::accuracy::samples::Step::series", |s| {
+        seen(spherule::accuracy::samples::Step::series(&s.draw()))
+    }),
     Call::new("spherule::accuracy::samples::in_all", |s| {
         seen(spherule::accuracy::samples::in_all(s.draw(), s.few()))
     }),
@@ -318,8 +321,6 @@ pub const CALLS: &[Call] = &[
             &spherule::Device::Cpu,
             &s.many()[..],
             &s.draw(),
-            s.few(),
-            s.draw(),
             s.draw(),
             spherule::render::QUIET,
         ))
@@ -790,6 +791,9 @@ pub const CALLS: &[Call] = &[
     }),
     Call::new("spherule::kernel_module::for_rung", |s| {
         seen(spherule::kernel_module::for_rung(s.draw()))
+    }),
+    Call::new("spherule::look::origin", |s| {
+        seen(spherule::look::origin(&s.many()[..]))
     }),
     Call::new("spherule::look::world", |s| {
         seen(spherule::look::world(&s.many()[..], s.draw()))
@@ -1287,6 +1291,12 @@ pub const CALLS: &[Call] = &[
         "spherule_kernel::accel::brute::MovingSpheres as spherule_kernel::accel::brute::Spheres::is_left",
         |s| {
             seen(<spherule_kernel::accel::brute::MovingSpheres as spherule_kernel::accel::brute::Spheres>::is_left(&s.draw::<odd::OddMovingSpheres>().get(), s.draw()))
+        },
+    ),
+    Call::new(
+        "spherule_kernel::accel::brute::MovingSpheres as spherule_kernel::accel::brute::Spheres::is_passed",
+        |s| {
+            seen(<spherule_kernel::accel::brute::MovingSpheres as spherule_kernel::accel::brute::Spheres>::is_passed(&s.draw::<odd::OddMovingSpheres>().get(), s.draw()))
         },
     ),
     Call::new("spherule_kernel::accel::brute::MovingSpheres::read", |s| {
@@ -2721,10 +2731,13 @@ pub const CALLS: &[Call] = &[
         seen(spherule_kernel::precision::double::quotient::<f32>(
             s.draw(),
             s.draw(),
+            s.draw(),
         ))
     }),
     Call::new("spherule_kernel::precision::double::square_root", |s| {
         seen(spherule_kernel::precision::double::square_root::<f32>(
+            s.draw(),
+            s.draw(),
             s.draw(),
         ))
     }),
@@ -3072,6 +3085,7 @@ impl Odd for spherule::accuracy::samples::Step {
     fn odd(s: &mut Source) -> Self {
         spherule::accuracy::samples::Step {
             rung: Odd::odd(s),
+            denoised: Odd::odd(s),
             samples: Odd::odd(s),
             milliseconds: Odd::odd(s),
             error: Odd::odd(s),
@@ -3189,7 +3203,7 @@ impl Odd for spherule::device::kernel::LaunchTime {
 
 impl Odd for spherule::error::Error {
     fn odd(s: &mut Source) -> Self {
-        match s.below(19) {
+        match s.below(20) {
             0 => spherule::error::Error::NoAdapter {
                 wanted: Odd::odd(s),
                 found: Odd::odd(s),
@@ -3229,47 +3243,50 @@ impl Odd for spherule::error::Error {
                 available: Odd::odd(s),
                 purpose: Odd::odd(s),
             },
-            8 => spherule::error::Error::Threads {
+            8 => spherule::error::Error::Denoiser {
                 reason: Odd::odd(s),
             },
-            9 => spherule::error::Error::LaunchLimits {
+            9 => spherule::error::Error::Threads {
+                reason: Odd::odd(s),
+            },
+            10 => spherule::error::Error::LaunchLimits {
                 kernel: Odd::odd(s),
                 device: Odd::odd(s),
                 what: Odd::odd(s),
                 asked: Odd::odd(s),
                 limit: Odd::odd(s),
             },
-            10 => spherule::error::Error::Validation {
+            11 => spherule::error::Error::Validation {
                 during: Odd::odd(s),
                 reason: Odd::odd(s),
             },
-            11 => spherule::error::Error::DeviceLost {
+            12 => spherule::error::Error::DeviceLost {
                 device: Odd::odd(s),
                 during: Odd::odd(s),
                 reason: Odd::odd(s),
             },
-            12 => spherule::error::Error::Timeout {
+            13 => spherule::error::Error::Timeout {
                 device: Odd::odd(s),
                 during: Odd::odd(s),
                 limit: Odd::odd(s),
             },
-            13 => spherule::error::Error::RungRefused {
+            14 => spherule::error::Error::RungRefused {
                 rung: Odd::odd(s),
                 device: Odd::odd(s),
                 reason: Odd::odd(s),
             },
-            14 => spherule::error::Error::Readback {
+            15 => spherule::error::Error::Readback {
                 what: Odd::odd(s),
                 device: Odd::odd(s),
                 reason: Odd::odd(s),
             },
-            15 => spherule::error::Error::Scene(Odd::odd(s)),
-            16 => spherule::error::Error::Image {
+            16 => spherule::error::Error::Scene(Odd::odd(s)),
+            17 => spherule::error::Error::Image {
                 path: Odd::odd(s),
                 reason: Odd::odd(s),
                 help: Odd::odd(s),
             },
-            17 => spherule::error::Error::Output {
+            18 => spherule::error::Error::Output {
                 path: Odd::odd(s),
                 reason: Odd::odd(s),
                 help: Odd::odd(s),
@@ -3695,6 +3712,7 @@ impl Odd for spherule_kernel::path::Shadow {
         spherule_kernel::path::Shadow {
             ray: Odd::odd(s),
             left: Odd::odd(s),
+            target: Odd::odd(s),
             lamp: Odd::odd(s),
             light: Odd::odd(s),
             scatterings: Odd::odd(s),

@@ -14,6 +14,7 @@ use spherule::accuracy::measure::RungErrors;
 use spherule::accuracy::oracle::Intersection;
 use spherule::accuracy::price::Price;
 use spherule::accuracy::report::{FamilyResults, Row};
+use spherule::accuracy::samples;
 use spherule::accuracy::scene_cases::{SCENE_CASES, SceneCase};
 use spherule::bench::measure::Plan;
 use spherule::bench::scenes::BenchScene;
@@ -524,6 +525,17 @@ impl Odd for Vec3 {
             0 if vector.is_finite() => vector.normalize_or_zero(),
             1 => s.pick(&[Self::X, Self::NEG_Y, Self::Z, Self::ZERO, Self::ONE]),
             _ => vector,
+        }
+    }
+}
+
+impl Odd for samples::Plan {
+    fn odd(s: &mut Source) -> Self {
+        Self {
+            most: s.below(5) as u32,
+            denoiser: None,
+            compiling: Odd::odd(s),
+            until: Odd::odd(s),
         }
     }
 }
