@@ -57,6 +57,48 @@ fn aimed() -> impl Strategy<Value = (Ray, Sphere)> {
         )
 }
 
+/// A line that touches a sphere, or passes it by 2⁻ⁿ or by units in the last place of its radius.
+/// It is turned by a matrix of whole numbers, whose columns have the length n: everything that is
+/// computed is a sum of many products that all but cancel.
+fn touching() -> impl Strategy<Value = (Ray, Sphere)> {
+    let part = -60_i32..=60;
+    let turn = [part.clone(), part.clone(), part.clone(), part];
+    (
+        turn,
+        -9_i32..=9,
+        -75_i32..=0,
+        -1_i32..=1,
+        -1_i32..=1,
+        -20_i32..10,
+    )
+        .prop_filter_map(
+            "the matrix turns",
+            |(turn, start, off, side, ulps, scale)| {
+                let [w, x, y, z] = turn.map(|part| part as f32);
+                let n = w * w + x * x + y * y + z * z;
+                let along = Vec3::new(
+                    w * w + x * x - y * y - z * z,
+                    2.0 * (x * y + w * z),
+                    2.0 * (x * z - w * y),
+                );
+                let up = Vec3::new(
+                    2.0 * (x * y - w * z),
+                    w * w - x * x + y * y - z * z,
+                    2.0 * (y * z + w * x),
+                );
+                let aside = Vec3::new(
+                    2.0 * (x * z + w * y),
+                    2.0 * (y * z - w * x),
+                    w * w - x * x - y * y + z * z,
+                );
+                let radius = f32::from_bits(n.to_bits().wrapping_add_signed(ulps));
+                let center = aside * (side as f32 * 2.0_f32.powi(off));
+                let ray = Ray::new(up + along * start as f32, along * 2.0_f32.powi(scale));
+                (n > 0.0).then_some((ray, Sphere::new(center, radius)))
+            },
+        )
+}
+
 /// A camera with a view of any width, a point of its film, and a sphere whose centre is `off` radii
 /// away from the ray through that point. In one of four cases the camera's axes are so far from a
 /// right angle that they nearly cancel.
@@ -143,6 +185,11 @@ proptest! {
 
     #[test]
     fn certified_is_the_truth((ray, sphere) in aimed()) {
+        certified_is_right(&ray, sphere)?;
+    }
+
+    #[test]
+    fn certified_is_the_truth_where_lines_touch((ray, sphere) in touching()) {
         certified_is_right(&ray, sphere)?;
     }
 

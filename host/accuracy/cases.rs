@@ -569,7 +569,84 @@ const CATALOGUE: &[Entry] = &[
             }
         },
     },
+    Entry {
+        number: 44,
+        name: "Δ or c all but zero: no small product is lost",
+        promised_by: CERTIFIED,
+        probes: all_but_zero,
+    },
 ];
+
+/// Lines that pass a sphere by 2⁻ⁿ of its radius, or touch it, or start as near to it.
+fn all_but_zero(probes: &mut Probes, random: &mut Random) {
+    let true_within = Must::BeTrue(1);
+    let unit = |exponent: i32| 2.0_f32.powi(exponent);
+    // Found by number theory: Δ is a sum of three squares that almost cancels.
+    let origin = v(
+        -(0x5e_9a0f as f32) * unit(-4),
+        0xc5_e55b as f32 * unit(-4),
+        -(0x7c_78e9 as f32) * unit(-3),
+    );
+    let direction = v(
+        0x18_2cbb as f32 * unit(-22),
+        -(0x80_36f1 as f32) * unit(-23),
+        0x3c_9257 as f32 * unit(-22),
+    );
+    let center = v(
+        0x21_3215 as f32 * unit(-3),
+        -(0x72_83e9 as f32) * unit(-3),
+        0x9a_6f95 as f32 * unit(-4),
+    );
+    let radius = 0x93_236b as f32 * unit(-33);
+    for exponent in [-5, 0, 1] {
+        let by = unit(exponent);
+        let line = ray(origin * by, direction);
+        probes.add(true_within, line, center * by, radius * by);
+    }
+    // Both roots are negative, or c is 2⁻¹⁵² of its terms.
+    let beside = ray(v(unit(20), unit(-10), 0.0), Vec3::X);
+    probes.add(true_within, beside, Vec3::ZERO, unit(20));
+    let above = ray(v(-unit(20), 0.0, unit(-56)), v(unit(-10), 0.0, 0.0));
+    let above = Ray {
+        t_min: unit(-125),
+        ..above
+    };
+    probes.add(true_within, above, Vec3::ZERO, unit(20));
+    for exponent in [-20, -40, -60, -75] {
+        let off = unit(exponent);
+        let along_x = |off: f32| ray(v(-2.0, 1.0, off), Vec3::X);
+        probes.add(true_within, along_x(off), Vec3::ZERO, 1.0);
+        probes.add(true_within, along_x(0.0), Vec3::ZERO, 1.0);
+        // Turned by a matrix of whole numbers, whose columns have the length n: all components of
+        // the difference then cancel.
+        for _ in 0..16 {
+            let [w, x, y, z] = [(); 4].map(|()| random.within(-9.0, 9.0).round());
+            let n = w * w + x * x + y * y + z * z;
+            let columns = [
+                v(
+                    w * w + x * x - y * y - z * z,
+                    2.0 * (x * y + w * z),
+                    2.0 * (x * z - w * y),
+                ),
+                v(
+                    2.0 * (x * y - w * z),
+                    w * w - x * x + y * y - z * z,
+                    2.0 * (y * z + w * x),
+                ),
+                v(
+                    2.0 * (x * z + w * y),
+                    2.0 * (y * z - w * x),
+                    w * w - x * x - y * y + z * z,
+                ),
+            ];
+            if n > 0.0 {
+                let line = ray(columns[1] - columns[0] * 2.0, columns[0]);
+                probes.add(true_within, line, columns[2] * off, n);
+                probes.add(true_within, line, Vec3::ZERO, n);
+            }
+        }
+    }
+}
 
 /// The cases with a single ray and a single sphere.
 #[must_use]

@@ -26,19 +26,21 @@
 //! written as sums of exact products, and summed without loss ([`crate::arithmetic::distill`]).
 //! Each is then right to about 40 bits, whatever cancels, and zero where it is zero; the exception
 //! is a sum within 2⁻¹⁰⁰ of cancelling completely, which floats of one binade cannot reach. The
-//! remaining operations add numbers of one sign, so t is within 1 ulp.
+//! remaining operations add numbers of one sign, so t is within 1 ulp. Lengths and directions are
+//! multiplied by 2²⁸ before, so that no product of theirs is subnormal that counts: a component may
+//! be 2⁻⁷⁵ of the largest length. The largest sum, Δ, stays below 2¹²³.
 
 // On the CPU, std has `f32::sqrt`.
 #[cfg(target_arch = "spirv")]
 use spirv_std::num_traits::Float as _;
 
-use super::compensated::Quadratic;
+use super::compensated::{Quadratic, scale};
 use super::root::{Precision, choose_root};
 use crate::arithmetic::DoubleSingle;
 use crate::arithmetic::distill::distill;
 use crate::arithmetic::elements::{get, set};
 use crate::arithmetic::error_free::two_product;
-use crate::arithmetic::strict::{add, sub};
+use crate::arithmetic::strict::{add, mul, sub};
 use crate::hit::Hit;
 use crate::ray::Ray;
 use crate::sphere::Sphere;
@@ -46,6 +48,9 @@ use crate::sphere::Sphere;
 /// The rung of this module.
 #[derive(Clone, Copy, Debug)]
 pub struct Certified;
+
+/// What lengths and directions are multiplied by before the last stage: 2²⁸.
+const LARGE: f32 = (1 << 28) as f32;
 
 /// 32u.
 const FILTER: f32 = 1.0 / (1 << 19) as f32;
@@ -89,10 +94,7 @@ pub fn intersect_with_stage(sphere: Sphere, ray: &Ray) -> (f32, Stage) {
         let quadratic = if c_is_certain {
             quadratic
         } else {
-            Quadratic {
-                c: distilled_c(&quadratic),
-                ..quadratic
-            }
+            with_distilled_c(&quadratic)
         };
         let (near, far) = quadratic.roots();
         let stage = if c_is_certain {
@@ -145,10 +147,16 @@ fn misses_for_certain(sphere: Sphere, ray: &Ray) -> bool {
     false
 }
 
-/// Stage 3: the quadratic with every coefficient distilled.
+/// Stage 3: the quadratic with every coefficient distilled. Its roots are those of `pairs`: lengths
+/// and directions are multiplied by the same number.
 #[inline]
 fn distilled(pairs: &Quadratic) -> Quadratic {
-    let (o, d, r) = (pairs.o, pairs.d, pairs.r);
+    let (o, r) = enlarged(pairs);
+    let d = [
+        mul(pairs.d[0], LARGE),
+        mul(pairs.d[1], LARGE),
+        mul(pairs.d[2], LARGE),
+    ];
 
     // a = d·d and r², exactly; b = o·d.
     let mut a_terms = [0.0; 6];
@@ -201,25 +209,47 @@ fn distilled(pairs: &Quadratic) -> Quadratic {
     Quadratic {
         a: distill(&mut a_terms),
         b: distill(&mut b_terms),
-        c: distilled_c(pairs),
+        c: distilled_squares(&o, r),
         discriminant: distill(&mut terms),
         ..*pairs
     }
 }
 
-/// Distils c = o·o − r².
+/// The vector from the centre to the origin, and the radius, times [`LARGE`].
 #[inline]
-fn distilled_c(pairs: &Quadratic) -> DoubleSingle {
+fn enlarged(pairs: &Quadratic) -> ([DoubleSingle; 3], f32) {
+    let o = pairs.o;
+    let enlarged = [scale(o[0], LARGE), scale(o[1], LARGE), scale(o[2], LARGE)];
+    (enlarged, mul(pairs.r, LARGE))
+}
+
+/// The quadratic with c distilled. Its roots are those of `pairs`, as in [`distilled`].
+#[inline]
+fn with_distilled_c(pairs: &Quadratic) -> Quadratic {
+    let (o, r) = enlarged(pairs);
+    let squared = LARGE * LARGE;
+    Quadratic {
+        a: scale(pairs.a, squared),
+        b: scale(pairs.b, squared),
+        c: distilled_squares(&o, r),
+        discriminant: scale(scale(pairs.discriminant, squared), squared),
+        ..*pairs
+    }
+}
+
+/// Distils o·o − r².
+#[inline]
+fn distilled_squares(o: &[DoubleSingle; 3], r: f32) -> DoubleSingle {
     let mut terms = [0.0; 20];
     let mut axis = 0;
     while axis < 3 {
-        let o = get(&pairs.o, axis);
+        let o = get(o, axis);
         put_product(&mut terms, 6 * axis, o.high, o.high);
         put_product(&mut terms, 6 * axis + 2, add(o.high, o.high), o.low);
         put_product(&mut terms, 6 * axis + 4, o.low, o.low);
         axis += 1;
     }
-    let rr = two_product(pairs.r, pairs.r);
+    let rr = two_product(r, r);
     set(&mut terms, 18, sub(0.0, rr.0));
     set(&mut terms, 19, sub(0.0, rr.1));
     distill(&mut terms)

@@ -150,9 +150,10 @@ impl Quadratic {
         } else {
             root.minus(self.b)
         };
-        let outer = self.unscale(size.divided_by(self.a).high);
+        let outer = self.unscale(mul(size.divided_by(self.a).high, RAISED));
+        // While it is scaled, the root that is nearer to zero must not be subnormal.
         let inner = if size.high > 0.0 {
-            self.unscale(self.c.divided_by(size).high)
+            self.unscale(scale(self.c, RAISED).divided_by(size).high)
         } else {
             0.0
         };
@@ -163,17 +164,25 @@ impl Quadratic {
         }
     }
 
-    /// Converts a root of the scaled quadratic to a parameter along the ray, exactly. Both scales
-    /// are powers of two, and the reciprocal of one is made from its exponent, because a device's
-    /// quotients are not exact. The larger factor comes first, so that no digits are lost in a
-    /// subnormal intermediate result.
+    /// Converts a root of the scaled quadratic, times [`RAISED`], to a parameter along the ray,
+    /// exactly. Both scales are powers of two, and the reciprocal of one is made from its exponent,
+    /// because a device's quotients are not exact. The larger factor comes first, so that no digits
+    /// are lost in a subnormal intermediate result; and no result is infinite that is finite in the
+    /// end.
     #[inline]
-    fn unscale(&self, t: f32) -> f32 {
+    fn unscale(&self, raised: f32) -> f32 {
         let exponent = self.length_scale.to_bits() >> 23;
         let inverse = f32::from_bits(254_u32.wrapping_sub(exponent).max(1) << 23);
         let larger = self.direction_scale.max(inverse);
         let smaller = self.direction_scale.min(inverse);
-        mul(mul(t, larger), smaller)
+        let lower = 1.0 / RAISED;
+        if larger > RAISED {
+            mul(mul(raised, mul(larger, lower)), smaller)
+        } else if smaller > 1.0 {
+            mul(mul(mul(raised, larger), lower), smaller)
+        } else {
+            mul(mul(mul(raised, larger), smaller), lower)
+        }
     }
 
     /// |o|²|d|², approximately.
@@ -223,14 +232,18 @@ impl Quadratic {
     }
 }
 
+/// What roots are multiplied by before they are unscaled: 2⁴⁸.
+const RAISED: f32 = (1_u64 << 48) as f32;
+
 /// 2⁻ⁿ for n below 127.
 #[inline]
 const fn two_to_minus(n: u32) -> f32 {
     f32::from_bits((127 - n) << 23)
 }
 
+/// A pair times a power of two.
 #[inline]
-fn scale(value: DoubleSingle, factor: f32) -> DoubleSingle {
+pub(super) fn scale(value: DoubleSingle, factor: f32) -> DoubleSingle {
     DoubleSingle {
         high: mul(value.high, factor),
         low: mul(value.low, factor),
