@@ -118,14 +118,18 @@ pub fn parse(path: &Path, text: String) -> Result<Scene> {
     };
     let scene = |origin| Reader { origin, ..reader }.scene(&file, &split.spheres, atoms.as_deref());
     // What the file shows is near the scene's origin, so that 32-bit floats hold it as it is.
-    let origin = match (&file.camera, &atoms) {
-        (Some(camera), _) => reader.origin_near(camera.get_ref()),
-        (None, Some(atoms)) => look::origin(atoms),
-        (None, None) => origin::of(&scene(DVec3::ZERO)?),
+    let (origin, unmoved) = match (&file.camera, &atoms) {
+        (Some(camera), _) => (reader.origin_near(camera.get_ref()), None),
+        (None, Some(atoms)) => (look::origin(atoms), None),
+        (None, None) => {
+            let unmoved = scene(DVec3::ZERO)?;
+            (origin::of(&unmoved), Some(unmoved))
+        }
     };
-    // A scene as large as scenes may be does not fit around every origin.
-    match origin.map(scene) {
-        Some(Ok(scene)) => Ok(scene),
+    match (origin.map(scene), unmoved) {
+        (Some(Ok(moved)), _) => Ok(moved),
+        // A scene as large as scenes may be does not fit around every origin.
+        (_, Some(unmoved)) => Ok(unmoved),
         _ => scene(DVec3::ZERO),
     }
 }
