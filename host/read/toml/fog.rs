@@ -45,7 +45,7 @@ impl Reader<'_> {
             medium: Fog {
                 center: match &fog.center {
                     Some(center) => self.point("center", center)?,
-                    None => Vec3::ZERO,
+                    None => (-self.origin).as_vec3(),
                 },
                 radius: number("radius", &fog.radius, limits::RADIUS, 0.0)?,
                 albedo,

@@ -88,6 +88,14 @@ radius = 3
 /// A coordinate of 10⁶ is 0.06 off in 32-bit floats.
 #[test]
 fn far_scenes_keep_their_shape() {
+    let around_origin = SURROUNDINGS.replace("center = [{0.017}, {0.019}, {0.023}]", "");
+    let far = format!("{}{SPHERES}", moved(&around_origin, 1e6));
+    let fog = read(&moved(&far, 1e6)).expect("a scene").fog.expect("fog");
+    assert_eq!(
+        fog.medium.center,
+        Vec3::splat(-1e6),
+        "around the file's origin"
+    );
     for text in [SPHERES.to_owned(), format!("{SURROUNDINGS}{SPHERES}")] {
         let near = read(&moved(&text, 0.0)).expect("a scene");
         let far = read(&moved(&text, 1e6)).expect("a scene");
