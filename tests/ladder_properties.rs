@@ -2,6 +2,7 @@
 
 use glam::Vec3;
 use proptest::prelude::*;
+use spherule::accuracy::cases::turned_axes;
 use spherule::accuracy::oracle::Intersection;
 use spherule::kernel::cull::bounds::Line;
 use spherule::kernel::cull::cone::{Cone, Sight};
@@ -58,8 +59,7 @@ fn aimed() -> impl Strategy<Value = (Ray, Sphere)> {
 }
 
 /// A line that touches a sphere, or passes it by 2⁻ⁿ or by units in the last place of its radius.
-/// It is turned by a matrix of whole numbers, whose columns have the length n: everything that is
-/// computed is a sum of many products that all but cancel.
+/// Along turned axes everything that is computed is a sum of many products that all but cancel.
 fn touching() -> impl Strategy<Value = (Ray, Sphere)> {
     let part = -60_i32..=60;
     let turn = [part.clone(), part.clone(), part.clone(), part];
@@ -74,23 +74,7 @@ fn touching() -> impl Strategy<Value = (Ray, Sphere)> {
         .prop_filter_map(
             "the matrix turns",
             |(turn, start, off, side, ulps, scale)| {
-                let [w, x, y, z] = turn.map(|part| part as f32);
-                let n = w * w + x * x + y * y + z * z;
-                let along = Vec3::new(
-                    w * w + x * x - y * y - z * z,
-                    2.0 * (x * y + w * z),
-                    2.0 * (x * z - w * y),
-                );
-                let up = Vec3::new(
-                    2.0 * (x * y - w * z),
-                    w * w - x * x + y * y - z * z,
-                    2.0 * (y * z + w * x),
-                );
-                let aside = Vec3::new(
-                    2.0 * (x * z + w * y),
-                    2.0 * (y * z - w * x),
-                    w * w - x * x - y * y + z * z,
-                );
+                let ([along, up, aside], n) = turned_axes(turn.map(|part| part as f32));
                 let radius = f32::from_bits(n.to_bits().wrapping_add_signed(ulps));
                 let center = aside * (side as f32 * 2.0_f32.powi(off));
                 let ray = Ray::new(up + along * start as f32, along * 2.0_f32.powi(scale));

@@ -617,35 +617,44 @@ fn all_but_zero(probes: &mut Probes, random: &mut Random) {
         let along_x = |off: f32| ray(v(-2.0, 1.0, off), Vec3::X);
         probes.add(true_within, along_x(off), Vec3::ZERO, 1.0);
         probes.add(true_within, along_x(0.0), Vec3::ZERO, 1.0);
-        // Turned by a matrix of whole numbers, whose columns have the length n: all components of
-        // the difference then cancel.
+        // Along turned axes all components of the difference cancel.
         for _ in 0..16 {
-            let [w, x, y, z] = [(); 4].map(|()| random.within(-9.0, 9.0).round());
-            let n = w * w + x * x + y * y + z * z;
-            let columns = [
-                v(
-                    w * w + x * x - y * y - z * z,
-                    2.0 * (x * y + w * z),
-                    2.0 * (x * z - w * y),
-                ),
-                v(
-                    2.0 * (x * y - w * z),
-                    w * w - x * x + y * y - z * z,
-                    2.0 * (y * z + w * x),
-                ),
-                v(
-                    2.0 * (x * z + w * y),
-                    2.0 * (y * z - w * x),
-                    w * w - x * x - y * y + z * z,
-                ),
-            ];
+            let parts = [(); 4].map(|()| random.within(-9.0, 9.0).round());
+            let ([along, up, aside], n) = turned_axes(parts);
             if n > 0.0 {
-                let line = ray(columns[1] - columns[0] * 2.0, columns[0]);
-                probes.add(true_within, line, columns[2] * off, n);
+                let line = ray(up - along * 2.0, along);
+                probes.add(true_within, line, aside * off, n);
                 probes.add(true_within, line, Vec3::ZERO, n);
             }
         }
     }
+}
+
+/// The axes turned by a quaternion of these parts, and their length, the sum of the parts' squares:
+/// of whole parts all are whole numbers, and what is computed along them is a sum of many products.
+///
+/// L. Euler, Problema algebraicum, Novi Comm. Acad. Sci. Petrop. 15 (1771).
+#[must_use]
+pub fn turned_axes([w, x, y, z]: [f32; 4]) -> ([Vec3; 3], f32) {
+    let (ww, xx, yy, zz) = (w * w, x * x, y * y, z * z);
+    let axes = [
+        v(
+            ww + xx - yy - zz,
+            2.0 * (x * y + w * z),
+            2.0 * (x * z - w * y),
+        ),
+        v(
+            2.0 * (x * y - w * z),
+            ww - xx + yy - zz,
+            2.0 * (y * z + w * x),
+        ),
+        v(
+            2.0 * (x * z + w * y),
+            2.0 * (y * z - w * x),
+            ww - xx - yy + zz,
+        ),
+    ];
+    (axes, ww + xx + yy + zz)
 }
 
 /// The cases with a single ray and a single sphere.

@@ -44,9 +44,9 @@ pub struct Step {
 }
 
 impl Step {
-    fn of(rendered: &Rendered, rung: Rung, samples: u32, reference: &Image) -> Self {
+    fn of(rendered: &Rendered, rung: &'static str, samples: u32, reference: &Image) -> Self {
         Self {
-            rung: rung.name(),
+            rung,
             denoised: false,
             samples,
             milliseconds: rendered.timings.trace.as_secs_f64() * 1e3,
@@ -65,13 +65,12 @@ impl Step {
     ) -> Result<Self> {
         let started = Instant::now();
         denoiser.denoise(&mut rendered.image)?;
+        let took = started.elapsed();
         Ok(Self {
             denoised: true,
-            milliseconds: self.milliseconds + started.elapsed().as_secs_f64() * 1e3,
-            error: error(&rendered.image, reference),
+            milliseconds: self.milliseconds + took.as_secs_f64() * 1e3,
             estimate: f64::NAN,
-            flip: mean_flip(reference, &rendered.image).unwrap_or(f64::NAN),
-            ..self
+            ..Self::of(&rendered, self.rung, self.samples, reference)
         })
     }
 
@@ -193,7 +192,7 @@ pub fn measure(
             let compile = rendered.timings.compile;
             expected = started.elapsed().saturating_sub(compile).saturating_mul(2);
             done += f64::from(samples);
-            let step = Step::of(&rendered, *rung, samples, &reference);
+            let step = Step::of(&rendered, rung.name(), samples, &reference);
             steps.push(step);
             if let Some(denoiser) = &mut denoiser {
                 clean.push(step.denoised(rendered, denoiser, &reference)?);

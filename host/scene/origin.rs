@@ -4,7 +4,7 @@
 
 use glam::DVec3;
 
-use super::Scene;
+use super::View;
 
 /// A scene is far if what it shows is this many times as far from the origin as from the eye.
 const FAR: f64 = 64.0;
@@ -22,9 +22,8 @@ pub(crate) fn near(target: DVec3, distance: f64) -> Option<DVec3> {
     Some((target / unit).round() * unit)
 }
 
-/// [`near`] what the scene's view shows.
-pub(crate) fn of(scene: &Scene) -> Option<DVec3> {
-    let view = scene.view_or_framed();
+/// [`near`] what the view shows.
+pub(crate) fn of(view: &View) -> Option<DVec3> {
     let (eye, target) = (view.eye.as_dvec3(), view.target.as_dvec3());
     near(target, eye.distance(target))
 }

@@ -123,7 +123,7 @@ pub fn parse(path: &Path, text: String) -> Result<Scene> {
         (None, Some(atoms)) => (look::origin(atoms), None),
         (None, None) => {
             let unmoved = scene(DVec3::ZERO)?;
-            (origin::of(&unmoved), Some(unmoved))
+            (origin::of(&unmoved.view_or_framed()), Some(unmoved))
         }
     };
     match (origin.map(scene), unmoved) {

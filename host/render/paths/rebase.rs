@@ -13,13 +13,13 @@ use crate::scene::{Scene, View, origin};
 /// The scene, moved so that what its camera looks at is near the origin; `None` if it is near it
 /// already, or if some coordinate would be rounded.
 pub(super) fn rebased(scene: &Scene) -> Option<Scene> {
-    let origin = origin::of(scene)?;
+    let view = scene.view_or_framed();
+    let origin = origin::of(&view)?;
     let moved = |point: Vec3| {
         let difference = point.as_dvec3() - origin;
         let rounded = difference.as_vec3();
         (rounded.as_dvec3() == difference).then_some(rounded)
     };
-    let view = scene.view_or_framed();
     let (eye, target) = (moved(view.eye)?, moved(view.target)?);
     // Where a sphere in motion is would be rounded in another place.
     if !scene.world.velocities.is_empty() {

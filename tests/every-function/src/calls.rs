@@ -186,6 +186,9 @@ pub const CALLS: &[Call] = &[
     Call::new("spherule::accuracy::cases::catalogue", |_| {
         seen(spherule::accuracy::cases::catalogue())
     }),
+    Call::new("spherule::accuracy::cases::turned_axes", |s| {
+        seen(spherule::accuracy::cases::turned_axes(s.draw()))
+    }),
     Call::new("spherule::accuracy::families::Family::name", |s| {
         seen(spherule::accuracy::families::Family::name(s.draw()))
     }),
