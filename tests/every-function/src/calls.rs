@@ -1001,7 +1001,7 @@ pub const CALLS: &[Call] = &[
         ))
     })
     .on_gpu()
-    .at_most(2, 120),
+    .at_most(2, 240),
     Call::new("spherule::render::paths::gpu::render", |s| {
         seen(spherule::render::paths::gpu::render(
             s.gpu(),
@@ -1011,7 +1011,7 @@ pub const CALLS: &[Call] = &[
         ))
     })
     .on_gpu()
-    .at_most(2, 120),
+    .at_most(2, 240),
     Call::new("spherule::render::paths::prepare::Prepared::new", |s| {
         seen(spherule::render::paths::prepare::Prepared::new(
             &s.draw(),

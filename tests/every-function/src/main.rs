@@ -66,6 +66,15 @@ impl Call {
             ..self
         }
     }
+
+    /// How many seconds the call may take beside others. All calls share one GPU, so that one that
+    /// only reads from it may wait for the longest of them: a software adapter compiles the largest
+    /// kernel for a minute.
+    fn may_wait(&self) -> u64 {
+        let of_gpu = calls::CALLS.iter().filter(|call| call.needs_gpu);
+        let longest = of_gpu.map(|call| call.seconds).max().unwrap_or(0);
+        self.seconds.max(if self.needs_gpu { longest } else { 0 })
+    }
 }
 
 /// Consumes what a function returns.
@@ -463,7 +472,7 @@ fn watch(places: &[Place], is_over: &AtomicBool) {
             if (seen.0, seen.1) != (function, number) {
                 *seen = (function, number, Instant::now());
             } else if let Some(call) = calls::CALLS.get(function as usize)
-                && seen.2.elapsed() > HANGS + Duration::from_secs(call.seconds)
+                && seen.2.elapsed() > HANGS + Duration::from_secs(call.may_wait())
             {
                 println!("HANGS: {} {number}", call.name);
                 std::process::exit(1);
