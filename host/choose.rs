@@ -90,31 +90,89 @@ pub fn choose(scene: &Scene, tolerance: f64, has_f64: bool) -> Choice {
     }
 }
 
-/// The most pixels by which the rung's errors may move anything in the scene's image.
+/// The most pixels by which the rung's errors may move anything in the scene's image, while the
+/// shutter is open.
 #[must_use]
 pub fn bound(scene: &Scene, rung: Rung) -> f64 {
     let view = scene.view_or_framed();
     let eye = view.eye.as_dvec3();
     let pixel = 2.0 * (0.5 * view.vertical_fov.to_radians()).tan() / f64::from(scene.height);
-    scene
-        .world
+    let (open, close) = scene.lens.shutter;
+    let world = &scene.world;
+    world
         .spheres
         .par_iter()
+        .enumerate()
         .with_min_len(GRAIN)
-        .map(|sphere| shift(rung, eye, sphere) / pixel)
+        .map(|(index, sphere)| {
+            let velocity = world
+                .velocities
+                .get(index)
+                .map_or(DVec3::ZERO, |velocity| velocity.as_dvec3());
+            let times = [open, close].map(|time| velocity * f64::from(time));
+            shift(rung, &Sight::of(eye, sphere, times)) / pixel
+        })
         .reduce(|| 0.0, f64::max)
 }
 
+/// Where a sphere is seen from, while it moves.
+struct Sight {
+    radius: f64,
+    /// The largest distance of the eye from the sphere's centre.
+    farthest: f64,
+    /// The smallest distance.
+    nearest: f64,
+    /// The smallest |o·o − r²|.
+    c: f64,
+    /// The largest coordinate that is rounded on the way to o.
+    coordinate: f64,
+}
+
+impl Sight {
+    /// Of a sphere that moves by `from` and by `to` from where it is, and in a line between.
+    fn of(eye: DVec3, sphere: &Sphere, [from, to]: [DVec3; 2]) -> Self {
+        let center = sphere.center().as_dvec3();
+        let (first, way) = (eye - center - from, from - to);
+        let along = -first.dot(way) / way.length_squared();
+        // NaN for a sphere that rests.
+        let along = if along.is_nan() {
+            0.0
+        } else {
+            along.clamp(0.0, 1.0)
+        };
+        let nearest = (first + way * along).length();
+        let farthest = first.length().max((first + way).length());
+        let radius = f64::from(sphere.radius());
+        let c = if (nearest..=farthest).contains(&radius) && way != DVec3::ZERO {
+            0.0
+        } else {
+            let of = |o: f64| (o * o - radius * radius).abs();
+            of(nearest).min(of(farthest))
+        };
+        let moved = center.abs() + from.abs().max(to.abs()) * 2.0;
+        Self {
+            radius,
+            farthest,
+            nearest,
+            c,
+            coordinate: eye.abs().max(moved).max_element(),
+        }
+    }
+}
+
 /// The largest shift, as an angle, that the rung's error can cause on this sphere.
-fn shift(rung: Rung, eye: DVec3, sphere: &Sphere) -> f64 {
+fn shift(rung: Rung, sight: &Sight) -> f64 {
     let single = f64::from(f32::EPSILON) / 2.0;
-    let (center, r) = (sphere.center().as_dvec3(), f64::from(sphere.radius()));
-    let o = (eye - center).length();
+    let &Sight {
+        radius: r,
+        farthest: o,
+        c,
+        ..
+    } = sight;
     let (oo, rr) = (o * o, r * r);
-    let c = (oo - rr).abs();
     let of_t = |u: f64| u * ((5.0 * oo + rr) / c + 1.0 + (29.0 * o + 5.0 * r) / c.sqrt());
     let of_foot = |u: f64| 17.0 * u;
-    let of_difference = single * eye.abs().max(center.abs()).max_element() / o;
+    let of_difference = single * sight.coordinate / sight.nearest;
     match rung {
         Rung::Textbook => {
             let of_t = 8.0 * single * (oo + rr) * (o + r) / (c * c.sqrt());
@@ -203,7 +261,9 @@ mod tests {
             let center = random.unit_vec3() * random.within(0.0, 10.0);
             let sphere = Sphere::new(center, radius);
             let eye = center + up * (radius + height);
-            let bound = shift(Rung::Robust, eye.as_dvec3(), &sphere);
+            let still = [DVec3::ZERO; 2];
+            let sight = Sight::of(eye.as_dvec3(), &sphere, still);
+            let bound = shift(Rung::Robust, &sight);
             let o = eye.as_dvec3() - center.as_dvec3();
             for _ in 0..400 {
                 // More of them graze the sphere than chance would have.
@@ -231,6 +291,32 @@ mod tests {
             }
         }
         assert!(nearest > 0.2, "{nearest}");
+    }
+
+    /// A sphere that is far at time 0, and all but touches the eye while the shutter is open.
+    #[test]
+    fn the_bound_is_that_of_the_nearest_moment() {
+        let radius = 1000.0;
+        let mut passing = scene(
+            Sphere::new(Vec3::new(0.0, -2.0 * radius, 0.0), radius),
+            Vec3::ZERO,
+        );
+        assert_eq!(choose(&passing, DEFAULT_TOLERANCE, true).rung, Rung::Robust);
+        passing.world.velocities = vec![Vec3::new(0.0, radius - 0.001, 0.0)];
+        assert_eq!(choose(&passing, DEFAULT_TOLERANCE, true).rung, Rung::Robust);
+        passing.lens.shutter = (0.5, 1.0);
+        assert_eq!(choose(&passing, DEFAULT_TOLERANCE, true).rung, Rung::Double);
+        // It passes through the eye.
+        passing.lens.shutter = (0.5, 1.5);
+        assert_eq!(
+            choose(&passing, DEFAULT_TOLERANCE, true).rung,
+            Rung::Certified
+        );
+        // It crosses the view at a distance, nearest in the middle of its way.
+        passing.world.spheres[0] = Sphere::new(Vec3::new(-1e5, 0.0, -radius - 0.001), radius);
+        passing.world.velocities = vec![Vec3::new(2e5, 0.0, 0.0)];
+        passing.lens.shutter = (0.0, 1.0);
+        assert_eq!(choose(&passing, DEFAULT_TOLERANCE, true).rung, Rung::Double);
     }
 
     #[test]

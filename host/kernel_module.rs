@@ -1,9 +1,6 @@
 //! The SPIR-V of the kernel that this build embeds: compiled by this build (feature
 //! `compile-kernel`), or the committed modules of `spherule-kernel`.
 
-use spherule_kernel::Rung;
-use spherule_kernel::precision::Needs;
-
 use crate::device::Module;
 use crate::error::Result;
 
@@ -39,17 +36,4 @@ fn embedded(name: &str, bytes: &[u8]) -> Result<Module> {
     let module = Module::from_bytes(name, bytes)?;
     // SAFETY: rust-gpu compiled it and ran spirv-val on it, and a test compares its bytes.
     Ok(unsafe { module.trusted() })
-}
-
-/// The module for this rung, with the rung fixed: the driver compiles no other.
-///
-/// # Errors
-///
-/// As [`f32()`].
-pub fn for_rung(rung: Rung) -> Result<Module> {
-    let module = match rung.needs() {
-        Needs::Nothing | Needs::ErrorTerms => f32(),
-        Needs::DoubleFloats => f64(),
-    };
-    module?.specialise(Rung::SPEC_ID, rung.to_u32())
 }

@@ -191,6 +191,11 @@ macro_rules! single {
             }
 
             #[inline(always)]
+            fn to_single(self) -> Self {
+                self
+            }
+
+            #[inline(always)]
             fn abs(self) -> Self {
                 Self(self.0.abs())
             }
@@ -208,6 +213,11 @@ macro_rules! single {
             #[inline(always)]
             fn mul_sub_rough(self, factor: Self, term: Self) -> Self {
                 Self(self.0.mul_sub(factor.0, term.0))
+            }
+
+            #[inline(always)]
+            fn are_all(mask: Self::Mask) -> bool {
+                mask.all_true()
             }
 
             #[inline(always)]
@@ -263,6 +273,11 @@ impl<S: Simd> Lane for Double16<S> {
     }
 
     #[inline(always)]
+    fn to_single(self) -> Self {
+        Self::widened(self.rounded())
+    }
+
+    #[inline(always)]
     fn abs(self) -> Self {
         Self(self.0.abs(), self.1.abs())
     }
@@ -270,6 +285,11 @@ impl<S: Simd> Lane for Double16<S> {
     #[inline(always)]
     fn sqrt(self) -> Self {
         Self(self.0.sqrt(), self.1.sqrt())
+    }
+
+    #[inline(always)]
+    fn are_all(mask: Self::Mask) -> bool {
+        mask.0.all_true() && mask.1.all_true()
     }
 
     #[inline(always)]
@@ -359,6 +379,11 @@ impl Lane for Four {
     }
 
     #[inline(always)]
+    fn to_single(self) -> Self {
+        self
+    }
+
+    #[inline(always)]
     fn abs(self) -> Self {
         Self(self.0.abs())
     }
@@ -386,6 +411,11 @@ impl Lane for Four {
     #[inline(always)]
     fn simd_ge(self, other: Self) -> FourMask {
         FourMask(self.0.cmpge(other.0).bitmask())
+    }
+
+    #[inline(always)]
+    fn are_all(mask: FourMask) -> bool {
+        mask.0 == 0xf
     }
 
     #[inline(always)]

@@ -72,6 +72,7 @@ fn the_modules_have_the_entry_points_that_the_host_calls() {
         ];
         if needs_f64 {
             expected.push("measure_wide_arithmetic");
+            expected.push("measure_wide_multiplications");
             expected.sort_unstable();
         }
         assert_eq!(names, expected);

@@ -3,12 +3,14 @@
 use glam::Vec3;
 use proptest::prelude::*;
 use spherule::accuracy::cases::turned_axes;
-use spherule::accuracy::oracle::Intersection;
+use spherule::accuracy::oracle::{Intersection, Root};
 use spherule::kernel::cull::bounds::Line;
 use spherule::kernel::cull::cone::{Cone, Sight};
 use spherule::kernel::cull::frustum::Frustum;
 use spherule::kernel::glam::Vec2;
-use spherule::kernel::precision::intersect;
+use spherule::kernel::lane::Lane3;
+use spherule::kernel::precision::certified::intersect_in_single;
+use spherule::kernel::precision::{Precision, Robust, double, intersect};
 use spherule::kernel::{Camera, Hit, Ray, Rung, Sphere};
 use spherule::ulp;
 
@@ -148,20 +150,155 @@ fn scaled(ray: &Ray, sphere: Sphere, length: i32, direction: i32) -> (Ray, Spher
 
 fn answer(rung: Rung, ray: &Ray, sphere: Sphere) -> Option<f32> {
     let t = intersect(rung.to_u32(), sphere, ray);
+    hit(t)
+}
+
+fn hit(t: f32) -> Option<f32> {
     assert!(!t.is_nan());
     (t < Hit::NONE_T).then_some(t)
 }
 
-/// Compares certified with the oracle: both hit or both miss, and the parameters are within one
-/// unit in the last place.
+/// Compares certified with the oracle, with 64-bit floats and without: both hit or both miss, and
+/// the parameter is the float nearest to the exact one.
 fn certified_is_right(ray: &Ray, sphere: Sphere) -> Result<(), TestCaseError> {
-    let truth = Intersection::of(ray, &sphere).and_then(|exact| exact.nearest(ray));
-    let found = answer(Rung::Certified, ray, sphere);
-    prop_assert_eq!(found.is_some(), truth.is_some(), "{:?} {:?}", found, truth);
-    if let (Some(found), Some(truth)) = (found, truth) {
-        prop_assert!(ulp::distance(found, truth) <= 1, "{found:e} {truth:e}");
+    let exact = Intersection::of(ray, &sphere);
+    let truth = exact.and_then(|exact| exact.nearest(ray));
+    let answers = [
+        ("certified", answer(Rung::Certified, ray, sphere)),
+        ("in 32 bits", hit(intersect_in_single(sphere, ray).0)),
+    ];
+    for (name, found) in answers {
+        prop_assert_eq!(
+            found.is_some(),
+            truth.is_some(),
+            "{}: {:?} {:?}",
+            name,
+            found,
+            truth
+        );
+        if let (Some(found), Some(truth)) = (found, truth) {
+            prop_assert!(found == truth, "{name}: {found:e} {truth:e}");
+        }
     }
     Ok(())
+}
+
+/// The ray with intervals that begin or end at one of the sphere's roots, or up to two units in the
+/// last place beside it.
+fn with_ends_at_roots(ray: &Ray, sphere: Sphere) -> Vec<Ray> {
+    let Some(exact) = Intersection::of(ray, &sphere) else {
+        return Vec::new();
+    };
+    let near_and_far = [Root::Near, Root::Far].map(|root| exact.root(root));
+    let mut rays = Vec::new();
+    for root in near_and_far.into_iter().flatten().filter(|t| t.is_normal()) {
+        for ulps in -2_i32..=2 {
+            let end = f32::from_bits(root.to_bits().wrapping_add_signed(ulps));
+            rays.push(Ray { t_min: end, ..*ray });
+            rays.push(Ray {
+                t_min: f32::MIN,
+                t_max: end,
+                ..*ray
+            });
+        }
+    }
+    rays
+}
+
+/// A ray along an axis whose roots are whole numbers and a half in units of their last place, so
+/// that they lie in the middle between two floats, or a little beside it.
+fn half_way() -> impl Strategy<Value = (Ray, Sphere)> {
+    (
+        1_i32 << 22..1 << 23,
+        1_i32..64,
+        1_i32..8,
+        -60_i32..60,
+        -80_i32..-20,
+        0..3_usize,
+        any::<bool>(),
+    )
+        .prop_map(|(far, radius, parts, length, aside, axis, is_beside)| {
+            let unit = 2.0_f32.powi(length);
+            let along = |x: f32, y: f32| {
+                let mut vector = Vec3::ZERO;
+                vector[axis] = x * unit;
+                vector[(axis + 1) % 3] = y * unit;
+                vector
+            };
+            let aside = if is_beside { 2.0_f32.powi(aside) } else { 0.0 };
+            // The radius has a bit below the last one of the distance.
+            let radius = radius as f32 + parts as f32 / 8.0;
+            let ray = Ray::new(along(-(far as f32), aside), along(1.0, 0.0) / unit);
+            (ray, Sphere::new(Vec3::ZERO, radius * unit))
+        })
+}
+
+/// A ray that starts on a sphere, up to the rounding of its origin, and all but touches it there:
+/// each term of its quadratic but a is all but rounding.
+fn grazing_from_the_surface() -> impl Strategy<Value = (Ray, Sphere)> {
+    (
+        vector(),
+        radius(),
+        vector(),
+        vector(),
+        -40_i32..-10,
+        -1.0_f32..1.0,
+        -40_i32..0,
+    )
+        .prop_filter_map(
+            "there are such directions",
+            |(center, radius, out, aside, tilt, sign, start)| {
+                let center = center * 0.001;
+                let out = out.try_normalize()?;
+                let along = out.cross(aside).try_normalize()?;
+                let direction = along + out * (sign * 2.0_f32.powi(tilt));
+                let mut ray = Ray::new(center + out * radius, direction);
+                if sign > 0.5 {
+                    ray.t_min = -radius;
+                } else if sign > 0.0 {
+                    ray.t_min = radius * 2.0_f32.powi(start);
+                }
+                Some((ray, Sphere::new(center, radius)))
+            },
+        )
+}
+
+/// How far the point of a hit is from the sphere.
+fn off_the_sphere(ray: &Ray, sphere: Sphere, t: f32) -> f64 {
+    let point = ray.origin.as_dvec3() + ray.direction.as_dvec3() * f64::from(t);
+    ((point - sphere.center().as_dvec3()).length() - f64::from(sphere.radius())).abs()
+}
+
+/// What boxes are widened by for robust, which must hold all its hits.
+fn robust_stays_near(ray: &Ray, sphere: Sphere) -> Result<(), TestCaseError> {
+    if let Some(t) = answer(Rung::Robust, ray, sphere) {
+        let far = (sphere.center() - ray.origin).abs() + sphere.radius();
+        let off = off_the_sphere(ray, sphere, t);
+        let widened = f64::from(Robust::widening(far, sphere.radius()));
+        prop_assert!(off <= widened, "{off:e} off, {widened:e} allowed");
+    }
+    Ok(())
+}
+
+/// Found by an oracle: robust put the hit at t = 1, half a radius away from the sphere.
+#[test]
+fn robust_is_near_a_sphere_that_it_touches_where_it_starts() {
+    let ray = Ray::within(
+        Vec3::new(
+            0x00af_d959 as f32 / 16_777_216.0,
+            -(0x004e_c69b as f32) / 67_108_864.0,
+            -(0x0011_ff11 as f32) / 2_097_152.0,
+        ),
+        Vec3::new(
+            -(0x0081_64bf as f32) / 16_777_216.0,
+            -(0x00c8_5cfb as f32) / 33_554_432.0,
+            -(0x00b7_b213 as f32) / 8_388_608.0,
+        ),
+        0x0071_074b as f32 / 8_388_608.0,
+        Hit::NONE_T,
+    );
+    let sphere = Sphere::new(Vec3::new(0.1, 0.2, -0.3), 0.7);
+    robust_stays_near(&ray, sphere).expect("near the sphere");
 }
 
 proptest! {
@@ -175,6 +312,31 @@ proptest! {
     #[test]
     fn certified_is_the_truth_where_lines_touch((ray, sphere) in touching()) {
         certified_is_right(&ray, sphere)?;
+    }
+
+    #[test]
+    fn robust_stays_near_its_spheres((ray, sphere) in prop_oneof![aimed(), touching(), grazing_from_the_surface()]) {
+        robust_stays_near(&ray, sphere)?;
+    }
+
+    #[test]
+    fn certified_is_the_truth_for_rays_that_graze_from_the_surface((ray, sphere) in grazing_from_the_surface()) {
+        certified_is_right(&ray, sphere)?;
+    }
+
+    #[test]
+    fn certified_is_the_truth_half_way_between_floats((ray, sphere) in half_way()) {
+        certified_is_right(&ray, sphere)?;
+        for ray in with_ends_at_roots(&ray, sphere) {
+            certified_is_right(&ray, sphere)?;
+        }
+    }
+
+    #[test]
+    fn certified_is_the_truth_at_the_ends_of_intervals((ray, sphere) in prop_oneof![aimed(), touching()]) {
+        for ray in with_ends_at_roots(&ray, sphere) {
+            certified_is_right(&ray, sphere)?;
+        }
     }
 
     /// The same if squares of lengths and directions overflow or underflow.
@@ -277,26 +439,40 @@ proptest! {
     }
 
     /// Outside of the margin on |Δ| / (a r²), hit and miss are right, and t is within 1 ulp where c
-    /// has digits.
+    /// and q have digits.
     #[test]
-    fn compensated_and_double_are_right_outside_their_margin((ray, sphere) in aimed()) {
+    fn compensated_and_double_are_right_outside_their_margin(
+        (ray, sphere) in prop_oneof![aimed(), grazing_from_the_surface(), touching()]
+    ) {
         let exact = Intersection::of(&ray, &sphere).expect("a line");
         let o = ray.origin.as_dvec3() - sphere.center().as_dvec3();
-        let r = f64::from(sphere.radius());
-        let relative = 1.0 + o.length() / r;
-        let c_has_digits = (o.length_squared() - r * r).abs()
-            >= 2.0_f64.powi(-19) * (o.length_squared() + r * r);
-        for (rung, bits) in [(Rung::Compensated, -38), (Rung::Double, -46)] {
-            if exact.margin() <= 2.0_f64.powi(bits) * relative * relative || !c_has_digits {
+        let d = ray.direction.as_dvec3();
+        let (r, a, oo) = (f64::from(sphere.radius()), d.length_squared(), o.length_squared());
+        let far = 1.0 + o.length() / r;
+        let c = double::residual(
+            Lane3::of(ray.origin).widened(),
+            Lane3::of(sphere.center()).widened(),
+            r,
+        );
+        let root = (exact.margin() * a * r * r).sqrt();
+        let q = o.dot(d).abs() + root;
+        for (rung, band, of_c) in [(Rung::Compensated, -38, -19), (Rung::Double, -46, -46)] {
+            let band = 2.0_f64.powi(band) * far;
+            let c_has_digits = c.abs() >= 2.0_f64.powi(of_c) * (oo + r * r);
+            if exact.margin() <= band * far || !c_has_digits {
                 continue;
             }
             let truth = exact.nearest(&ray);
             let found = answer(rung, &ray, sphere);
-            prop_assert_eq!(found.is_some(), truth.is_some(), "{} {:?} {:?}", rung.name(), found, truth);
-            // The error of √Δ counts only where Δ is not tiny.
-            if let (Some(found), Some(truth)) = (found, truth)
-                && exact.margin() > 2.0_f64.powi(bits / 2)
-            {
+            let q_has_digits = root * q >= band * 2.0_f64.powi(24) * a * r * r;
+            if !q_has_digits {
+                continue;
+            }
+            // The rounded root may be on the other side of the interval's start.
+            let is_at_start = exact.root(Root::Near).is_some_and(|t| ulp::distance(t, ray.t_min) <= 1)
+                || exact.root(Root::Far).is_some_and(|t| ulp::distance(t, ray.t_min) <= 1);
+            prop_assert!(found.is_some() == truth.is_some() || is_at_start, "{} {:?} {:?}", rung.name(), found, truth);
+            if let (Some(found), Some(truth), false) = (found, truth, is_at_start) {
                 prop_assert!(ulp::distance(found, truth) <= 1, "{} {found:e} {truth:e}", rung.name());
             }
         }

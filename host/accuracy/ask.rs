@@ -8,9 +8,8 @@ use spherule_kernel::material::optics::{Fresnel, Incidence};
 use spherule_kernel::probe::glass_walk::{Walk, walk_inside};
 use spherule_kernel::{Hit, Ray, Rung, Sphere, Surface};
 
-use crate::device::{Access, Binding, Device, Gpu};
+use crate::device::{Access, Binding, Device, Gpu, rung};
 use crate::error::Result;
-use crate::kernel_module;
 
 /// How often [`walks`] reflects a path; the entry point uses the same number.
 const WALK: u32 = 1000;
@@ -160,7 +159,7 @@ fn launch<T: Pod>(
 ) -> Result<Vec<T>> {
     let mut access = vec![Access::Read; inputs.len()];
     access.push(Access::ReadWrite);
-    let kernel = gpu.kernel(&kernel_module::for_rung(rung)?, entry, &access)?;
+    let kernel = gpu.kernel(&rung::module(gpu, rung)?, entry, &access)?;
     let output = gpu.zeroed::<T>("results", elements * each)?;
     let mut bindings = inputs.to_vec();
     bindings.push(output.binding());

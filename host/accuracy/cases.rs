@@ -9,7 +9,7 @@ use serde::Serialize;
 use spherule_kernel::{Hit, Ray, Rung, Sphere, Surface};
 
 use super::measure::intersect_all;
-use super::oracle::Intersection;
+use super::oracle::{Intersection, Root};
 use crate::device::Device;
 use crate::error::Result;
 use crate::random::Random;
@@ -78,6 +78,12 @@ impl Verdict {
 
 pub(super) const ALL: &[Rung] = &Rung::ALL;
 pub(super) const UPPER: &[Rung] = &[Rung::Compensated, Rung::Double, Rung::Certified];
+pub(super) const BOUNDED: &[Rung] = &[
+    Rung::Robust,
+    Rung::Compensated,
+    Rung::Double,
+    Rung::Certified,
+];
 pub(super) const CERTIFIED: &[Rung] = &[Rung::Certified];
 
 impl Case {
@@ -575,7 +581,45 @@ const CATALOGUE: &[Entry] = &[
         promised_by: CERTIFIED,
         probes: all_but_zero,
     },
+    Entry {
+        number: 45,
+        name: "a root next to an end of the interval: as rounded",
+        promised_by: CERTIFIED,
+        probes: at_the_ends,
+    },
 ];
+
+/// Intervals that begin or end at a root, or a few units in the last place beside it.
+fn at_the_ends(probes: &mut Probes, random: &mut Random) {
+    for index in 0..32 {
+        let (center, radius) = (random.vec3(-4.0, 4.0), random.log_within(0.01, 100.0));
+        // Lines through the sphere, close to its silhouette, and from inside of it.
+        let off = [random.within(0.0, 0.9), 1.0 - random.log_within(1e-6, 0.1)][index % 2];
+        let from = if index % 3 == 0 { 0.5 } else { 3.0 };
+        let out = random.unit_vec3();
+        let aside = out.any_orthonormal_vector() * (off * radius);
+        let line = ray(center + aside + out * (from * radius), -out);
+        let Some(exact) = Intersection::of(&line, &Sphere::new(center, radius)) else {
+            continue;
+        };
+        for root in [Root::Near, Root::Far]
+            .into_iter()
+            .filter_map(|root| exact.root(root))
+        {
+            for ulps in -2_i32..=2 {
+                let end = f32::from_bits(root.to_bits().wrapping_add_signed(ulps));
+                let begins = Ray { t_min: end, ..line };
+                let ends = Ray {
+                    t_min: f32::MIN,
+                    t_max: end,
+                    ..line
+                };
+                probes.add(Must::BeTrue(0), begins, center, radius);
+                probes.add(Must::BeTrue(0), ends, center, radius);
+            }
+        }
+    }
+}
 
 /// Lines that pass a sphere by 2⁻ⁿ of its radius, or touch it, or start as near to it.
 fn all_but_zero(probes: &mut Probes, random: &mut Random) {

@@ -4,16 +4,15 @@ use std::fmt;
 
 use rayon::prelude::*;
 use serde::Serialize;
-use spherule_kernel::precision::certified::intersect_with_stage;
+use spherule_kernel::precision::certified::{Stage, intersect_in_single, intersect_with_stage};
 use spherule_kernel::precision::intersect;
 use spherule_kernel::{Hit, Ray, Rung, Sphere, Surface};
 
 use super::oracle::Intersection;
 use super::screen;
 use crate::device::canary::Canary;
-use crate::device::{Access, Device, Gpu};
+use crate::device::{Access, Device, Gpu, rung};
 use crate::error::Result;
-use crate::kernel_module;
 use crate::random::Random;
 use crate::ulp;
 
@@ -47,69 +46,110 @@ pub struct RungErrors {
     pub worst: Option<Worst>,
 }
 
-/// How many rays each stage of the certified rung decides.
+/// How many tests each step of the certified rung decides.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Steps {
+    /// 64-bit floats.
+    pub wide: usize,
+    /// The filter.
+    pub filter: usize,
+    /// Pairs of floats.
+    pub pairs: usize,
+    /// Pairs of floats, with c distilled.
+    pub distilled_c: usize,
+    /// Distillation of everything.
+    pub distilled: usize,
+}
+
+impl Steps {
+    fn count(&mut self, stage: Stage) {
+        *match stage {
+            Stage::Wide => &mut self.wide,
+            Stage::Filter => &mut self.filter,
+            Stage::Pairs => &mut self.pairs,
+            Stage::DistilledC => &mut self.distilled_c,
+            Stage::Distilled => &mut self.distilled,
+        } += 1;
+    }
+}
+
+impl fmt::Display for Steps {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let named = [
+            ("64-bit floats", self.wide),
+            ("the filter", self.filter),
+            ("pairs", self.pairs),
+            ("pairs with c distilled", self.distilled_c),
+            ("distillation", self.distilled),
+        ];
+        let total: usize = named.iter().map(|(_, count)| count).sum();
+        let mut shown = named.iter().filter(|(_, count)| *count > 0).peekable();
+        if shown.peek().is_none() {
+            return f.write_str("no test");
+        }
+        while let Some((name, count)) = shown.next() {
+            write!(f, "{name} {:.3} %", 100.0 * *count as f64 / total as f64)?;
+            if shown.peek().is_some() {
+                f.write_str(", ")?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// How many tests each step of the certified rung decides, with 64-bit floats and without.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Escalation {
-    /// Tests, each of a ray with its own sphere, that the filter decided.
-    pub filter: usize,
-    /// Tests that pairs of floats decided.
-    pub pairs: usize,
-    /// Tests for which c had to be distilled.
-    pub distilled_c: usize,
-    /// Tests for which everything had to be distilled.
-    pub distilled: usize,
-    /// The same four counts for tests of each ray with spheres of other rays, as in a scene.
-    pub in_a_scene: [usize; 4],
+    /// Tests, each of a ray with its own sphere.
+    pub own: Steps,
+    /// The same in 32-bit floats alone.
+    pub own_in_single: Steps,
+    /// Tests of each ray with spheres of other rays, as in a scene.
+    pub in_a_scene: Steps,
+    /// The same in 32-bit floats alone.
+    pub in_a_scene_in_single: Steps,
 }
 
 impl Escalation {
-    /// Counts on the CPU. A GPU decides the same way, up to the rounding of the filter.
+    /// Counts on the CPU. A GPU decides the same way, up to the rounding of bounds.
     #[must_use]
     pub fn of(samples: &[(Ray, Sphere)]) -> Self {
-        let mut counts = [0; 4];
-        for (ray, sphere) in samples {
-            counts[intersect_with_stage(*sphere, ray).1 as usize] += 1;
-        }
-        let mut in_a_scene = [0; 4];
-        for (ray, _) in samples.iter().take(2000) {
-            let mut ray = *ray;
-            for (_, sphere) in samples.iter().take(500) {
-                let (t, stage) = intersect_with_stage(*sphere, &ray);
-                ray.t_max = ray.t_max.min(t);
-                in_a_scene[stage as usize] += 1;
+        type Certified = fn(Sphere, &Ray) -> (f32, Stage);
+        let own = |of: Certified| {
+            let mut steps = Steps::default();
+            for (ray, sphere) in samples {
+                steps.count(of(*sphere, ray).1);
             }
-        }
-        let [filter, pairs, distilled_c, distilled] = counts;
+            steps
+        };
+        let in_a_scene = |of: Certified| {
+            let mut steps = Steps::default();
+            for (ray, _) in samples.iter().take(2000) {
+                let mut ray = *ray;
+                for (_, sphere) in samples.iter().take(500) {
+                    let (t, stage) = of(*sphere, &ray);
+                    ray.t_max = ray.t_max.min(t);
+                    steps.count(stage);
+                }
+            }
+            steps
+        };
         Self {
-            filter,
-            pairs,
-            distilled_c,
-            distilled,
-            in_a_scene,
+            own: own(intersect_with_stage),
+            own_in_single: own(intersect_in_single),
+            in_a_scene: in_a_scene(intersect_with_stage),
+            in_a_scene_in_single: in_a_scene(intersect_in_single),
         }
     }
 }
 
 impl fmt::Display for Escalation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let shares = |counts: [usize; 4]| {
-            let total = counts
-                .map(|count| count as f64)
-                .iter()
-                .sum::<f64>()
-                .max(1.0);
-            counts.map(|count| 100.0 * count as f64 / total)
-        };
-        let [filter, pairs, distilled_c, distilled] =
-            shares([self.filter, self.pairs, self.distilled_c, self.distilled]);
-        let [scene_filter, _, scene_c, scene_all] = shares(self.in_a_scene);
         write!(
             f,
-            "certified: of tests of rays with their own spheres the filter decides {filter:.2} %, pairs {pairs:.2} %, pairs with \
-             c distilled {distilled_c:.2} %, distillation {distilled:.3} %; against 500 spheres of the family {:.3} % of \
-             the tests escalate, {:.4} % to a distillation",
-            100.0 - scene_filter,
-            scene_c + scene_all,
+            "certified: tests of rays with their own spheres are decided by {}; without 64-bit floats by {}; against 500 \
+             spheres of the family by {}; without 64-bit floats by {}",
+            self.own, self.own_in_single, self.in_a_scene, self.in_a_scene_in_single
         )
     }
 }
@@ -152,7 +192,7 @@ pub fn intersect_all(device: &Device, rung: Rung, samples: &[(Ray, Sphere)]) -> 
 /// The device's errors.
 pub fn intersect_on_gpu(gpu: &Gpu, rung: Rung, samples: &[(Ray, Sphere)]) -> Result<Vec<f32>> {
     let kernel = gpu.kernel(
-        &kernel_module::for_rung(rung)?,
+        &rung::module(gpu, rung)?,
         "intersect_pairs",
         &[Access::Read, Access::Read, Access::ReadWrite],
     )?;

@@ -130,25 +130,16 @@ impl Intersection {
         }
     }
 
-    /// The smaller root in the ray's interval, rounded; `None` if there is none, or if an end of
-    /// the interval is NaN. The exact root is compared with the interval, while the rungs compare
-    /// the rounded one: the two may differ for a root within half a unit in the last place of an
-    /// end.
+    /// The smaller root that is in the ray's interval once it is rounded; `None` if there is none,
+    /// or if an end of the interval is NaN. The largest float stands for infinity, which no root
+    /// reaches.
     #[must_use]
     pub fn nearest(&self, ray: &Ray) -> Option<f32> {
-        if ray.t_min.is_nan() || ray.t_max.is_nan() {
-            return None;
-        }
-        // The largest float stands for infinity, which no root reaches.
-        let ray = Ray {
-            t_min: ray.t_min.clamp(f32::MIN, f32::MAX),
-            t_max: ray.t_max.clamp(f32::MIN, f32::MAX),
-            ..*ray
-        };
-        [Root::Near, Root::Far].into_iter().find_map(|root| {
-            let inside = self.compare(root, ray.t_min)? >= 0 && self.compare(root, ray.t_max)? < 0;
-            inside.then(|| self.root(root)).flatten()
-        })
+        let end = ray.end();
+        let in_time = |t: &f32| *t >= ray.t_min && *t < ray.t_max && *t < end;
+        [Root::Near, Root::Far]
+            .into_iter()
+            .find_map(|root| self.root(root).filter(in_time))
     }
 
     /// The sign of the exact root minus `t`, a finite float; `None` if the line misses.

@@ -7,9 +7,8 @@ use spherule_kernel::accel::brute::nearest_hit_in;
 use spherule_kernel::precision::OnRung;
 use spherule_kernel::{Hit, Ray, Rung, Sphere};
 
-use crate::device::{Access, Device};
+use crate::device::{Access, Device, rung};
 use crate::error::Result;
-use crate::kernel_module;
 
 /// The time of one intersection.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -61,7 +60,7 @@ pub fn measure(device: &Device, rungs: &[Rung], samples: &[(Ray, Sphere)]) -> Re
             let hits = gpu.zeroed::<Hit>("hits", rays.len())?;
             let mut kernels = Vec::new();
             for rung in rungs {
-                let module = kernel_module::for_rung(*rung)?;
+                let module = rung::module(gpu, *rung)?;
                 let access = [Access::Read, Access::Read, Access::ReadWrite];
                 kernels.push(gpu.kernel(&module, "trace_rays", &access)?);
             }

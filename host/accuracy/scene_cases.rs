@@ -6,7 +6,7 @@ use spherule_kernel::material::optics::Incidence;
 use spherule_kernel::{Hit, Ray, Rung, Sphere};
 
 use super::ask;
-use super::cases::{ALL, CERTIFIED, UPPER, Verdict};
+use super::cases::{ALL, BOUNDED, CERTIFIED, UPPER, Verdict};
 use super::families::Family;
 use super::measure::intersect_all;
 use super::oracle;
@@ -109,7 +109,93 @@ pub const SCENE_CASES: &[SceneCase] = &[
         promised_by: ALL,
         objection: light_of_lamps,
     },
+    SceneCase {
+        number: 46,
+        name: "sphere smaller than an ulp of t: a normal, no re-hit",
+        promised_by: ALL,
+        objection: small_as_rounding,
+    },
+    SceneCase {
+        number: 47,
+        name: "touching where it starts: any hit is on the sphere",
+        promised_by: BOUNDED,
+        objection: touching_at_the_start,
+    },
 ];
+
+/// Rays at spheres so small and so far away that t has no digit of their size.
+fn small_as_rounding(device: &Device, rung: Rung) -> Result<Option<String>> {
+    let mut random = Random::new(46);
+    let mut samples = vec![(
+        Ray::new(Vec3::new(-131_072.0, 0.0, 0.0), Vec3::X),
+        Sphere::new(Vec3::ZERO, 0.003),
+    )];
+    for _ in 0..64 {
+        // What a direction is off by must be less than the sphere: along an axis it is nothing.
+        let axis = [Vec3::X, Vec3::NEG_Y, Vec3::Z][samples.len() % 3];
+        let distance = random.log_within(1e4, 1e7);
+        let sphere = Sphere::new(Vec3::ZERO, distance * random.log_within(1e-9, 1e-7));
+        samples.push((Ray::new(-axis * distance, axis), sphere));
+    }
+    let parameters = intersect_all(device, rung, &samples)?;
+    let surfaces = ask::surfaces(device, &samples, &parameters)?;
+    let mut leaving = Vec::new();
+    for (((ray, sphere), surface), t) in samples.iter().zip(&surfaces).zip(&parameters) {
+        if *t == Hit::NONE_T {
+            // The textbook's discriminant has no digit of such a sphere.
+            if rung == Rung::Textbook {
+                continue;
+            }
+            return Ok(Some(format!("missed from {}", ray.origin)));
+        }
+        let normal = surface.normal;
+        if (normal.length() - 1.0).abs() > 1e-6 || normal.dot(ray.direction) > 0.0 {
+            return Ok(Some(format!(
+                "normal {normal} for a ray along {}",
+                ray.direction
+            )));
+        }
+        leaving.push((surface.leave(normal), *sphere));
+    }
+    let again = intersect_all(device, rung, &leaving)?;
+    let mut hits = leaving.iter().zip(again).filter(|(_, t)| *t < Hit::NONE_T);
+    Ok(hits
+        .next()
+        .map(|((ray, _), t)| format!("hit again at {t} from {}", ray.origin)))
+}
+
+/// Rays that start on a sphere, along it: b, c and Δ are all but rounding.
+fn touching_at_the_start(device: &Device, rung: Rung) -> Result<Option<String>> {
+    let mut random = Random::new(47);
+    let mut samples = Vec::new();
+    for index in 0..20_000 {
+        let (center, radius) = (random.vec3(-0.4, 0.4), random.log_within(0.1, 100.0));
+        let out = random.unit_vec3();
+        let along = out.any_orthonormal_vector();
+        let along = (along + out.cross(along) * random.within(-2.0, 2.0)).normalize();
+        let tilt = out * random.log_within(1e-12, 1e-3) * [1.0, -1.0][index % 2];
+        let mut ray = Ray::new(center + out * radius, along + tilt);
+        if index % 3 > 0 {
+            ray.t_min = radius * random.log_within(1e-9, 1.0);
+        }
+        samples.push((ray, Sphere::new(center, radius)));
+    }
+    let parameters = intersect_all(device, rung, &samples)?;
+    let hits = samples
+        .iter()
+        .zip(&parameters)
+        .filter(|(_, t)| **t < Hit::NONE_T);
+    for ((ray, sphere), t) in hits {
+        let point = ray.origin.as_dvec3() + ray.direction.as_dvec3() * f64::from(*t);
+        let (center, radius) = (sphere.center().as_dvec3(), f64::from(sphere.radius()));
+        let off = ((point - center).length() - radius).abs();
+        // 32u, as boxes are widened.
+        if off > 2.0_f64.powi(-19) * 2.0 * radius {
+            return Ok(Some(format!("t = {t:e} is {:e} radii off", off / radius)));
+        }
+    }
+    Ok(None)
+}
 
 /// Two lamps above balls on a ground, without what makes the balls.
 const LAMPS: &str = "

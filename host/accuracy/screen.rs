@@ -5,7 +5,7 @@
 //! most v|o|, of k by 8vN with room to spare, k·k by 32v|k|N + 4v k·k + 300v²N², a r² by 4v a r², b
 //! by 8vN, c by 8v(o·o + r²). The root of Δ is off by the error of Δ over √Δ as long as that error
 //! is less than a quarter of Δ. An answer counts only if both ends of its interval round to the
-//! same float, and are on the same side of both ends of the ray's interval.
+//! same float.
 
 use spherule_kernel::{Ray, Sphere};
 
@@ -67,15 +67,11 @@ pub fn screen(ray: &Ray, sphere: &Sphere) -> Option<Option<f32>> {
         [(-outer, outer_error), (-inner, inner_error)]
     };
     for (t, error) in roots {
-        let (low, high) = (t - 2.0 * error, t + 2.0 * error);
-        let (t_min, t_max) = (f64::from(ray.t_min), f64::from(ray.t_max));
-        if high < t_min || low >= t_max {
+        let (low, high) = ((t - 2.0 * error) as f32, (t + 2.0 * error) as f32);
+        if high < ray.t_min || low >= ray.t_max {
             continue;
         }
-        if low >= t_min && high < t_max && (low as f32).to_bits() == (high as f32).to_bits() {
-            return Some(Some(low as f32));
-        }
-        return None;
+        return (low.to_bits() == high.to_bits()).then_some(Some(low));
     }
     Some(None)
 }

@@ -9,7 +9,7 @@ use spherule_kernel::Rung;
 use spherule_kernel::precision::Needs;
 use spherule_kernel::probe::canary::{Operands, Outcome, WideOutcome, sing, sing_wide};
 
-use crate::device::{Access, Device, Gpu};
+use crate::device::{Access, Device, Gpu, rung};
 use crate::error::{Error, Result};
 use crate::kernel_module;
 use crate::random::Random;
@@ -59,6 +59,8 @@ pub struct Canary {
     pub keeps_subnormals: bool,
     /// 64-bit results that conform to IEEE 754; `None` without 64-bit floats.
     pub wide: Option<Share>,
+    /// Sums in 64 bits whose error term is exact; `None` without 64-bit floats.
+    pub wide_sums: Option<Share>,
 }
 
 impl Canary {
@@ -88,8 +90,10 @@ impl Canary {
     pub fn require_on_gpu(gpu: &Gpu, rung: Rung) -> Result<()> {
         match rung.needs() {
             Needs::Nothing => Ok(()),
-            Needs::ErrorTerms => Self::measure(gpu, false)?.require(rung, gpu.name()),
-            Needs::DoubleFloats => Self::measure(gpu, gpu.has_f64())?.require(rung, gpu.name()),
+            Needs::ErrorTerms | Needs::ErrorTermsAtLeast | Needs::DoubleFloats => {
+                let with_f64 = gpu.has_f64() && rung::uses_f64(gpu, rung)?;
+                Self::measure(gpu, with_f64)?.require(rung, gpu.name())
+            }
         }
     }
 
@@ -145,6 +149,7 @@ impl Canary {
             finds_nan: true,
             keeps_subnormals: true,
             wide: None,
+            wide_sums: None,
         };
         let count = |share: &mut Share, right: bool| {
             share.exact += usize::from(right);
@@ -185,8 +190,8 @@ impl Canary {
                 canary.keeps_subnormals &= outcome.small_product == small.to_bits();
             }
         }
-        canary.wide = wide.map(|wide| {
-            let mut share = Share::default();
+        if let Some(wide) = wide {
+            let (mut share, mut sums) = (Share::default(), Share::default());
             for (operands, outcome) in operands.iter().zip(wide) {
                 if operands.a.is_nan() {
                     continue;
@@ -202,9 +207,11 @@ impl Canary {
                         && near(outcome.quotient, expected.quotient)
                         && near(outcome.root, expected.root),
                 );
+                count(&mut sums, outcome.large_sum == expected.large_sum);
             }
-            share
-        });
+            canary.wide = Some(share);
+            canary.wide_sums = Some(sums);
+        }
         canary
     }
 
@@ -217,31 +224,43 @@ impl Canary {
                 share.exact, share.tried
             )
         };
+        let of_wide = |share: Share| {
+            (!share.is_whole()).then(|| {
+                format!(
+                    "64-bit results are right in {} of {} tries",
+                    share.exact, share.tried
+                )
+            })
+        };
+        let of_error_terms = || {
+            if !self.sums.is_whole() {
+                Some(broken("sums", self.sums))
+            } else if !self.products.is_whole() {
+                Some(broken("products", self.products))
+            // One correction squares the relative error, which is at most 2⁻¹⁹ here: that of pairs
+            // of floats is 2⁻³⁸ then.
+            } else if self.quotient_ulps > 16 || self.root_ulps > 16 {
+                Some(format!(
+                    "quotients are off by up to {} ulp and square roots by up to {}, too many for one correction",
+                    self.quotient_ulps, self.root_ulps
+                ))
+            } else {
+                None
+            }
+        };
         match rung.needs() {
             Needs::Nothing => None,
-            Needs::ErrorTerms => {
-                if !self.sums.is_whole() {
-                    Some(broken("sums", self.sums))
-                } else if !self.products.is_whole() {
-                    Some(broken("products", self.products))
-                // One correction squares the relative error, which is at most 2⁻²⁰ here, and t
-                // needs 2⁻²⁶.
-                } else if self.quotient_ulps > 16 || self.root_ulps > 16 {
-                    Some(format!(
-                        "quotients are off by up to {} ulp and square roots by up to {}, too many for one correction",
-                        self.quotient_ulps, self.root_ulps
-                    ))
-                } else {
-                    None
-                }
+            Needs::ErrorTerms => of_error_terms(),
+            Needs::ErrorTermsAtLeast => {
+                let of_wide_sums =
+                    |share: Share| (!share.is_whole()).then(|| broken("sums in 64 bits", share));
+                of_error_terms()
+                    .or_else(|| self.wide.and_then(of_wide))
+                    .or_else(|| self.wide_sums.and_then(of_wide_sums))
             }
             Needs::DoubleFloats => match self.wide {
                 None => Some("the device has no 64-bit floats".into()),
-                Some(share) if !share.is_whole() => Some(format!(
-                    "64-bit results are right in {} of {} tries",
-                    share.exact, share.tried
-                )),
-                Some(_) => None,
+                Some(share) => of_wide(share),
             },
         }
     }

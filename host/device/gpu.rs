@@ -16,7 +16,7 @@
 use std::borrow::Cow;
 use std::collections::HashMap;
 use std::hash::{DefaultHasher, Hash, Hasher};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
 
 use bytemuck::Pod;
@@ -41,6 +41,8 @@ pub struct GpuOptions {
     pub limits: Option<wgpu::Limits>,
     /// Passes kernels through naga even if the driver takes SPIR-V unchanged.
     pub through_naga: bool,
+    /// Leaves 64-bit floats unused even if the adapter has them.
+    pub without_f64: bool,
     /// How long a single launch may take before it counts as hung.
     pub timeout: Duration,
 }
@@ -50,6 +52,7 @@ impl Default for GpuOptions {
         Self {
             limits: None,
             through_naga: false,
+            without_f64: false,
             timeout: Duration::from_secs(120),
         }
     }
@@ -70,6 +73,15 @@ impl GpuOptions {
     pub fn through_naga(self, through_naga: bool) -> Self {
         Self {
             through_naga,
+            ..self
+        }
+    }
+
+    /// Leaves 64-bit floats unused, or not.
+    #[must_use]
+    pub fn without_f64(self, without_f64: bool) -> Self {
+        Self {
+            without_f64,
             ..self
         }
     }
@@ -100,6 +112,8 @@ pub struct Gpu {
     kernels: Mutex<HashMap<KernelKey, Kernel>>,
     /// The mark of everything that this device makes.
     owner: Owner,
+    /// Whether 64-bit floats save time, once it is known.
+    f64_pays: OnceLock<bool>,
 }
 
 /// What a compiled kernel depends on: a digest of the module's specialised words, whether they are
@@ -137,6 +151,9 @@ impl Gpu {
         if passthrough {
             wanted |= wgpu::Features::PASSTHROUGH_SHADERS;
         }
+        if options.without_f64 {
+            wanted.remove(wgpu::Features::SHADER_F64);
+        }
         let features = wanted & adapter.features();
         let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
             label: Some("spherule"),
@@ -169,6 +186,7 @@ impl Gpu {
             watch,
             kernels: Mutex::default(),
             owner: Owner::new(),
+            f64_pays: OnceLock::new(),
         })
     }
 
@@ -194,6 +212,17 @@ impl Gpu {
     #[must_use]
     pub fn has_f64(&self) -> bool {
         self.device.features().contains(wgpu::Features::SHADER_F64)
+    }
+
+    /// Whether 64-bit floats save time, as `measure` says the first time.
+    pub(super) fn remember_whether_f64_pays(
+        &self,
+        measure: impl FnOnce() -> Result<bool>,
+    ) -> Result<bool> {
+        match self.f64_pays.get() {
+            Some(pays) => Ok(*pays),
+            None => measure().map(|pays| *self.f64_pays.get_or_init(|| pays)),
+        }
     }
 
     /// The limits that the device was opened with.

@@ -9,6 +9,7 @@
 //! | [`spirv`] | [`Module`]: SPIR-V, checked and specialised |
 //! | [`buffer`] | [`Buffer`]: device memory |
 //! | [`canary`] | measures the arithmetic that the upper rungs need |
+//! | [`rung`] | the module that runs a rung on a GPU, with 64-bit floats where they pay |
 //!
 //! This module knows nothing of scenes and images. A program with kernels of its own can use it:
 //! see `examples/own-kernel`.
@@ -28,6 +29,8 @@ pub mod gpu;
 pub mod kernel;
 #[cfg(feature = "gpu")]
 mod mapping;
+#[cfg(feature = "gpu")]
+pub mod rung;
 #[cfg(feature = "gpu")]
 pub mod spirv;
 #[cfg(feature = "gpu")]

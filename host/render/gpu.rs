@@ -15,10 +15,9 @@ use super::tiles::Tiles;
 use super::{Progress, QUIET, Settings, Timings};
 use crate::accel::{self, BuiltTree};
 use crate::device::canary::Canary;
-use crate::device::{Access, Buffer, Gpu, Kernel, Staging};
+use crate::device::{Access, Buffer, Gpu, Kernel, Staging, rung};
 use crate::error::{Error, Result};
 use crate::film;
-use crate::kernel_module;
 use crate::scene::World;
 
 /// From how many spheres on a tree is grown. Where they lie evenly, lists for each tile are up to
@@ -138,7 +137,7 @@ impl Prepared {
                 },
             })
         });
-        let module = kernel_module::for_rung(settings.rung)?
+        let module = rung::module(gpu, settings.rung)?
             .specialise(Shading::SPEC_ID, settings.shading.to_u32())?
             .specialise(Node::SPEC_ID, trees.is_some().into())?;
         // Vulkan promises workgroups of 128 threads only.

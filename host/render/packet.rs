@@ -5,9 +5,10 @@
 //! side by side. Four more planes along the square's middle tell which of its quarters a sphere may
 //! be seen in. There it is tested against 16 rays side by side by the few operations of
 //! [`candidates`](spherule_kernel::cull::discriminant), and only what may be a hit is asked about
-//! on its rung: on [`Rung::Robust`] and [`Rung::Double`] 16 rays side by side again, with the very
-//! operations of the kernel, in their order; on [`Rung::Compensated`] and [`Rung::Certified`] about
-//! the nearest at the end, and about what [`bounds`](spherule_kernel::cull::bounds) leave open.
+//! on its rung: on [`Rung::Robust`], [`Rung::Double`] and [`Rung::Certified`] 16 rays side by side
+//! again, with the very operations of the kernel, in their order. On [`Rung::Compensated`] and
+//! [`Rung::Certified`] only what [`bounds`](spherule_kernel::cull::bounds) leave open is asked
+//! about, and the nearest sphere of each ray at the end.
 //!
 //! The formulas are the kernel's, over [`Single16`] and [`Double16`]. Loops over the eight boxes of
 //! a node become vector instructions; all is compiled for each instruction set, and chosen by the
@@ -20,6 +21,7 @@ use spherule_kernel::cull::bounds::Aim;
 use spherule_kernel::cull::discriminant::Target;
 use spherule_kernel::cull::frustum::inward_normal;
 use spherule_kernel::lane::{Lane, Lane3};
+use spherule_kernel::precision::certified::wide::WideRay;
 use spherule_kernel::precision::root::root_within;
 use spherule_kernel::precision::{self, double, intersect, robust};
 use spherule_kernel::{Camera, Hit, Launch, Ray, Rung, Sphere};
@@ -36,6 +38,8 @@ const WIDTH: usize = Node::WIDTH;
 /// without scaling, which wants 1/|d| to be 1 at most: that of a camera's rays is, but for its
 /// rounding.
 const SQUARES: std::ops::Range<f32> = 0.999..(1_u64 << 40) as f32;
+/// Of so many rays on, a rung is evaluated for 16 rather than one by one.
+const WORTH_LANES: u32 = 3;
 /// 32u, u = 2⁻²⁴: what a box test may be off by for its terms, twice over.
 const SLACK: f32 = 32.0 / (1 << 24) as f32;
 
@@ -408,15 +412,18 @@ impl Packet {
                         self.test_robust(simd, group, *sphere, index);
                     } else if RUNG == Rung::Double.to_u32() {
                         self.test_double(simd, group, *sphere, index);
-                    } else if precision::is_lazy(RUNG) && self.has_bounds {
-                        let open = self.test_bounds(simd, group, *sphere, index);
+                    } else {
+                        let mut open = may_hit.to_bitmask() as u32;
+                        if precision::is_lazy(RUNG) && self.has_bounds {
+                            open = self.test_bounds(simd, group, *sphere, index);
+                            self.ask::<S, RUNG>(simd, group, open, spheres);
+                        }
+                        if RUNG == Rung::Certified.to_u32() && open.count_ones() >= WORTH_LANES {
+                            open = self.test_certified(simd, group, *sphere, index, open);
+                        }
                         if open != 0 {
-                            self.ask::<RUNG>(group, open, spheres);
                             self.test_each::<RUNG>(group, *sphere, index, open);
                         }
-                    } else {
-                        let open = may_hit.to_bitmask() as u32;
-                        self.test_each::<RUNG>(group, *sphere, index, open);
                     }
                 }
             }
@@ -460,9 +467,18 @@ impl Packet {
 
     /// Asks the rung about the nearest spheres of these rays, a bit each, where it was not.
     #[inline(always)]
-    fn ask<const RUNG: u32>(&mut self, group: usize, rays: u32, spheres: &[Sphere]) {
+    fn ask<S: Simd, const RUNG: u32>(
+        &mut self,
+        simd: S,
+        group: usize,
+        rays: u32,
+        spheres: &[Sphere],
+    ) {
         let mut asked = rays & self.are_unasked[group];
         self.are_unasked[group] &= !asked;
+        if RUNG == Rung::Certified.to_u32() && asked.count_ones() >= WORTH_LANES {
+            asked = self.ask_certified(simd, group, asked, spheres);
+        }
         while asked != 0 {
             let lane = asked.trailing_zeros() as usize % LANES;
             asked &= asked - 1;
@@ -475,9 +491,9 @@ impl Packet {
 
     /// Asks the rung about what it was not.
     #[inline(always)]
-    fn finish<const RUNG: u32>(&mut self, spheres: &[Sphere]) {
+    fn finish<S: Simd, const RUNG: u32>(&mut self, simd: S, spheres: &[Sphere]) {
         for group in 0..GROUPS {
-            self.ask::<RUNG>(group, u32::MAX, spheres);
+            self.ask::<S, RUNG>(simd, group, u32::MAX, spheres);
         }
     }
 
@@ -546,23 +562,96 @@ impl Packet {
     /// [`double`] for 16 rays.
     #[inline(always)]
     fn test_double<S: Simd>(&mut self, simd: S, group: usize, sphere: Sphere, index: u32) {
-        let o = self.origin.as_dvec3() - sphere.center().as_dvec3();
         let quadratic = double::Quadratic::of(
-            Lane3 {
-                x: Double16::splat(simd, o.x),
-                y: Double16::splat(simd, o.y),
-                z: Double16::splat(simd, o.z),
-            },
+            splat3_wide(simd, self.origin.as_dvec3()),
+            self.wide_direction(simd, group),
+            splat3_wide(simd, sphere.center().as_dvec3()),
             Double16::splat(simd, sphere.radius().into()),
-            Lane3 {
-                x: Double16::widened(Single16::load(simd, &self.x[group].0)),
-                y: Double16::widened(Single16::load(simd, &self.y[group].0)),
-                z: Double16::widened(Single16::load(simd, &self.z[group].0)),
-            },
         );
         let meets = quadratic.meets().narrowed(simd);
-        let (near, far) = quadratic.roots();
-        self.take(simd, group, index, meets, near.rounded(), far.rounded());
+        let roots = quadratic.roots();
+        let (near, far) = (roots.near.rounded(), roots.far.rounded());
+        self.take(simd, group, index, meets, near, far);
+    }
+
+    /// [`certified`](precision::certified) for the rays of 16 that are open, a bit each, in 64-bit
+    /// floats; returns those for which it is not certain. The rung was asked about their nearest.
+    #[inline(always)]
+    fn test_certified<S: Simd>(
+        &mut self,
+        simd: S,
+        group: usize,
+        sphere: Sphere,
+        index: u32,
+        open: u32,
+    ) -> u32 {
+        let answer = self.wide_rays(simd, group).intersect(
+            splat3_wide(simd, sphere.center().as_dvec3()),
+            Double16::splat(simd, sphere.radius().into()),
+        );
+        let (is_hit, t) = (answer.is_hit.narrowed(simd), answer.t.rounded());
+        let is_open = mask32x16::from_bitmask(simd, open.into());
+        self.take(simd, group, index, is_hit & is_open, t, t);
+        for lane in 0..LANES {
+            if self.are_unasked[group] >> lane & 1 == 0 {
+                self.low[group].0[lane] = self.t[group].0[lane];
+            }
+        }
+        open & !answer.is_certain.narrowed(simd).to_bitmask() as u32
+    }
+
+    /// [`Packet::ask`] on [`Rung::Certified`] in 64-bit floats: returns the rays for which those
+    /// are not certain.
+    #[inline(always)]
+    fn ask_certified<S: Simd>(
+        &mut self,
+        simd: S,
+        group: usize,
+        asked: u32,
+        spheres: &[Sphere],
+    ) -> u32 {
+        let mut columns = [[f32::NAN; LANES]; 4];
+        for lane in (0..LANES).filter(|lane| asked >> lane & 1 == 1) {
+            let sphere = spheres[self.sphere[group][lane] as usize].to_vec4();
+            for (column, number) in columns.iter_mut().zip(sphere.to_array()) {
+                column[lane] = number;
+            }
+        }
+        let center = Lane3 {
+            x: Double16::widened(Single16::load(simd, &columns[0])),
+            y: Double16::widened(Single16::load(simd, &columns[1])),
+            z: Double16::widened(Single16::load(simd, &columns[2])),
+        };
+        let radius = Double16::widened(Single16::load(simd, &columns[3]));
+        let answer = self.wide_rays(simd, group).intersect(center, radius);
+        let mut found = [0.0; LANES];
+        answer.t.rounded().store(&mut found);
+        let certain = answer.is_certain.narrowed(simd).to_bitmask() as u32 & asked;
+        for lane in (0..LANES).filter(|lane| certain >> lane & 1 == 1) {
+            self.t[group].0[lane] = found[lane];
+            self.low[group].0[lane] = found[lane];
+        }
+        asked & !certain
+    }
+
+    /// The rays of a group, which have no end, in 64-bit floats.
+    #[inline(always)]
+    fn wide_rays<S: Simd>(&self, simd: S, group: usize) -> WideRay<Double16<S>> {
+        WideRay {
+            origin: splat3_wide(simd, self.origin.as_dvec3()),
+            direction: self.wide_direction(simd, group),
+            t_min: Double16::splat(simd, self.t_min.into()),
+            t_max: Double16::splat(simd, Hit::NONE_T.into()),
+        }
+    }
+
+    #[inline(always)]
+    fn wide_direction<S: Simd>(&self, simd: S, group: usize) -> Lane3<Double16<S>> {
+        Lane3 {
+            x: Double16::widened(Single16::load(simd, &self.x[group].0)),
+            y: Double16::widened(Single16::load(simd, &self.y[group].0)),
+            z: Double16::widened(Single16::load(simd, &self.z[group].0)),
+        }
     }
 
     /// Takes the smaller of two roots that is in the interval, where the line meets the sphere, and
@@ -588,6 +677,16 @@ impl Packet {
         Single16::select(is_new, t, best).store(&mut self.t[group].0);
         self.put_sphere(simd, group, is_new, index);
         self.end[group] = largest(&self.t[group].0);
+    }
+}
+
+/// The same vector in every lane.
+#[inline(always)]
+fn splat3_wide<S: Simd>(simd: S, vector: DVec3) -> Lane3<Double16<S>> {
+    Lane3 {
+        x: Double16::splat(simd, vector.x),
+        y: Double16::splat(simd, vector.y),
+        z: Double16::splat(simd, vector.z),
     }
 }
 
@@ -652,7 +751,7 @@ fn trace_on<S: Simd, const RUNG: u32>(
         // Of hits of a rung without a bound nothing is known; none is passed by for being far away.
         packet.widening = f32::MAX;
         packet.test::<S, RUNG>(simd, spheres, 0, spheres.len());
-        packet.finish::<RUNG>(spheres);
+        packet.finish::<S, RUNG>(simd, spheres);
         return;
     }
     let world = Extent::of_node(&nodes[0]);
@@ -729,7 +828,7 @@ fn trace_on<S: Simd, const RUNG: u32>(
             height += 1;
         }
     }
-    packet.finish::<RUNG>(spheres);
+    packet.finish::<S, RUNG>(simd, spheres);
 }
 
 /// A row of a node's sides.

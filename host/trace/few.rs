@@ -10,6 +10,7 @@ use glam::Vec3;
 use spherule_kernel::cull::bounds::{Aim, Line};
 use spherule_kernel::cull::discriminant::Target;
 use spherule_kernel::lane::{Lane, Lane3};
+use spherule_kernel::precision::certified::wide::WideRay;
 use spherule_kernel::precision::root::root_within;
 use spherule_kernel::precision::{double, robust};
 use spherule_kernel::{Hit, Ray, Rung, Sphere};
@@ -209,7 +210,8 @@ impl Group {
                 RobustLines::of(simd, self).roots(center, Single16::load(simd, &next.radius))
             }
             Rung::Double => DoubleLines::of(simd, self).roots(simd, next),
-            _ => return next.intersect(query, self),
+            Rung::Certified => return self.meet_for_certain(simd, query, next),
+            _ => return std::array::from_fn(|lane| next.intersect(lane, query, self)),
         };
         let (t_min, end) = (
             Single16::load(simd, &self.t_min),
@@ -219,6 +221,29 @@ impl Group {
         let t = Single16::select(meets & is_within, t, Single16::splat(simd, f32::NAN));
         let mut found = [0.0; LANES];
         t.store(&mut found);
+        found
+    }
+
+    /// [`Group::meet`] on [`Rung::Certified`]: in 64-bit floats, and one by one what those leave
+    /// open.
+    #[inline(always)]
+    fn meet_for_certain<S: Simd>(&self, simd: S, query: &Query<'_>, next: &Next) -> Lanes {
+        let wide = |lanes: &Lanes| Double16::widened(Single16::load(simd, lanes));
+        let line = WideRay {
+            origin: widened(simd, &self.origin),
+            direction: widened(simd, &self.direction),
+            t_min: wide(&self.t_min),
+            t_max: wide(&self.end),
+        };
+        let answer = line.intersect(widened(simd, &next.center), wide(&next.radius));
+        let mut found = [0.0; LANES];
+        answer.t.rounded().store(&mut found);
+        let mut open = (!answer.is_certain).narrowed(simd).to_bitmask();
+        while open != 0 {
+            let lane = open.trailing_zeros() as usize % LANES;
+            open &= open - 1;
+            found[lane] = next.intersect(lane, query, self);
+        }
         found
     }
 
@@ -390,16 +415,13 @@ impl Next {
         next
     }
 
-    /// The parameter of each ray at its sphere on a rung that is not there in lanes; NaN or the end
-    /// of the ray or more if there is none.
-    fn intersect(&self, query: &Query<'_>, group: &Group) -> Lanes {
-        std::array::from_fn(|lane| {
-            if self.index[lane] == Hit::NONE_SPHERE {
-                return f32::NAN;
-            }
-            let sphere = Sphere::new(vector(&self.center, lane), self.radius[lane]);
-            query.intersect(sphere, &group.ray(lane))
-        })
+    /// The parameter of a ray at its sphere; NaN or the end of the ray or more if there is none.
+    fn intersect(&self, lane: usize, query: &Query<'_>, group: &Group) -> f32 {
+        if self.index[lane] == Hit::NONE_SPHERE {
+            return f32::NAN;
+        }
+        let sphere = Sphere::new(vector(&self.center, lane), self.radius[lane]);
+        query.intersect(sphere, &group.ray(lane))
     }
 }
 
@@ -460,17 +482,12 @@ impl<S: Simd> DoubleLines<S> {
     /// Whether each line meets its sphere, and the roots, the smaller first.
     #[inline(always)]
     fn roots(&self, simd: S, next: &Next) -> (mask32x16<S>, Single16<S>, Single16<S>) {
-        let (origin, center) = (self.origin, widened(simd, &next.center));
-        let o = Lane3 {
-            x: origin.x - center.x,
-            y: origin.y - center.y,
-            z: origin.z - center.z,
-        };
+        let center = widened(simd, &next.center);
         let radius = Double16::widened(Single16::load(simd, &next.radius));
-        let quadratic = double::Quadratic::of(o, radius, self.direction);
-        let (near, far) = quadratic.roots();
+        let quadratic = double::Quadratic::of(self.origin, self.direction, center, radius);
+        let roots = quadratic.roots();
         let meets = quadratic.meets().narrowed(simd);
-        (meets, near.rounded(), far.rounded())
+        (meets, roots.near.rounded(), roots.far.rounded())
     }
 }
 

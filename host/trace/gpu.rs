@@ -6,9 +6,8 @@ use spherule_kernel::accel::node::Node;
 use spherule_kernel::{Hit, Ray, Rung, Sphere};
 
 use crate::accel::{self, Acceleration};
-use crate::device::{Access, Buffer, Gpu, Kernel};
+use crate::device::{Access, Buffer, Gpu, Kernel, rung};
 use crate::error::Result;
-use crate::kernel_module;
 
 /// The fewest spheres for which a tree pays, for single rays on a GPU.
 const MIN_SPHERES: usize = 16;
@@ -111,7 +110,7 @@ impl<'a> GpuTracer<'a> {
             return Ok(());
         }
         let access = [Access::Read, Access::Read, Access::ReadWrite];
-        let module = kernel_module::for_rung(Rung::Robust)?;
+        let module = rung::module(self.gpu, Rung::Robust)?;
         let kernel = self.gpu.kernel(&module, "trace_rays", &access)?;
         let bindings = [
             batch.rays.binding(),
@@ -161,7 +160,7 @@ impl<'a> GpuTracer<'a> {
         batch: &Batch,
         output: crate::device::Binding<'_>,
     ) -> Result<Duration> {
-        let module = kernel_module::for_rung(rung)?;
+        let module = rung::module(self.gpu, rung)?;
         let (rays, spheres) = (batch.rays.binding(), self.spheres.binding());
         let (read, write) = (Access::Read, Access::ReadWrite);
         let kernel: Kernel;

@@ -78,7 +78,6 @@ impl<'a> Single<'a> {
         }
         #[cfg(target_arch = "x86_64")]
         if let Some((wide, levels)) = self.levels
-            && (stream::has_lanes(self.query.rung) || levels.groups.len() <= 2)
             && levels.sphere_count <= spheres.len()
         {
             // SAFETY: the machine has AVX-512, as the proof says.

@@ -2,13 +2,14 @@
 
 use std::arch::x86_64::*;
 
-use fearless_simd::{SimdFrom, f32x16};
+use fearless_simd::{SimdFrom, SimdMask, f32x16, x86};
 use glam::Vec3;
 use spherule_kernel::accel::node::{Extent, Node};
 use spherule_kernel::accel::slabs::Slabs;
-use spherule_kernel::cull::bounds::Line;
+use spherule_kernel::cull::bounds::{Aim, Line};
 use spherule_kernel::lane::{Lane as _, Lane3};
 use spherule_kernel::precision::OnRung;
+use spherule_kernel::precision::certified::wide::WideRay;
 use spherule_kernel::precision::root::root_within;
 use spherule_kernel::precision::{double, robust};
 use spherule_kernel::{Hit, Ray, Rung, Sphere};
@@ -62,6 +63,11 @@ pub(super) struct Sixteen {
     /// [`Line::direction`] and [`Line::a`].
     scaled: [Lanes<f32>; 3],
     scaled_squared: Lanes<f32>,
+    /// [`Line::inverse`], [`Line::start`] and [`Line::behind`], and the end in the same units.
+    inverse_scaled_squared: Lanes<f32>,
+    start: Lanes<f32>,
+    behind: Lanes<f32>,
+    scaled_end: Lanes<f32>,
 }
 
 /// One ray's [`Slabs`], and its end in their units.
@@ -157,6 +163,13 @@ impl Sixteen {
             self.are_plain[i] = u32::from(is_plain(&ray, slabs.start));
             let line = Line::of(&ray);
             self.scaled_squared.0[i] = line.a;
+            // Robust is evaluated without bounds.
+            if RUNG != Rung::Robust.to_u32() {
+                self.inverse_scaled_squared.0[i] = line.inverse;
+                self.start.0[i] = line.start;
+                self.behind.0[i] = line.behind;
+                self.scaled_end.0[i] = ray.end() * line.unit;
+            }
             let put = |of: &mut [Lanes<f32>; 3], v: Vec3| {
                 (of[0].0[i], of[1].0[i], of[2].0[i]) = (v.x, v.y, v.z);
             };
@@ -254,7 +267,51 @@ impl Sixteen {
         Single16::select(hits, t, none).0.into()
     }
 
-    /// The same on [`Rung::Double`].
+    /// What [`bounds`](spherule_kernel::cull::bounds) tell of sixteen pairs: whether the ray hits
+    /// for certain, up to where then, and from where on it may hit, in the units of [`Line`]; NaN
+    /// where it misses for certain.
+    #[inline]
+    // As for `robust`.
+    #[target_feature(
+        enable = "adx,aes,avx512bitalg,avx512bw,avx512cd,avx512dq,avx512f,avx512ifma,avx512vbmi,avx512vbmi2,avx512vl,avx512vnni,avx512vpopcntdq,bmi1,bmi2,cmpxchg16b,fma,fxsr,gfni,lzcnt,movbe,pclmulqdq,popcnt,rdrand,rdseed,sha,vaes,vpclmulqdq,xsave,xsavec,xsaveopt,xsaves"
+    )]
+    pub(super) fn bounds(
+        &self,
+        Avx512(simd): Avx512,
+        rays: __m512i,
+        spheres: &[Sphere],
+        indices: __m512i,
+    ) -> (__mmask16, __m512, __m512) {
+        let number = |lanes| Single16(f32x16::simd_from(simd, lanes));
+        let of = |lanes: &Lanes<f32>| number(_mm512_permutexvar_ps(rays, lanes.load()));
+        let [cx, cy, cz, radius] = gather(spheres, indices).map(number);
+        let [x, y, z] = self.scaled.each_ref().map(of);
+        let [ox, oy, oz] = self.origin.each_ref().map(of);
+        let aim = Aim {
+            direction: Lane3 { x, y, z },
+            inverse: of(&self.inverse_scaled_squared),
+            start: of(&self.start),
+            behind: of(&self.behind),
+        };
+        let o = Lane3 {
+            x: cx - ox,
+            y: cy - oy,
+            z: cz - oz,
+        };
+        let (misses, hits, low, high) = aim.bounds(o, radius);
+        let (before, none) = (radius.splat(f32::NEG_INFINITY), radius.splat(f32::NAN));
+        let low = Single16::select(hits, low, before);
+        let low = Single16::select(misses, none, low);
+        (hits.to_bitmask() as __mmask16, high.0.into(), low.0.into())
+    }
+
+    /// The end of each ray, in the units of [`Line`].
+    #[inline(always)]
+    pub(super) fn ends(&self) -> [f32; LANES] {
+        self.scaled_end.0
+    }
+
+    /// The same as [`Sixteen::robust`] on [`Rung::Double`].
     #[inline]
     // As for `robust`.
     #[target_feature(
@@ -267,30 +324,75 @@ impl Sixteen {
         spheres: &[Sphere],
         indices: __m512i,
     ) -> __m512 {
+        let line = self.wide_rays(Avx512(simd), rays);
         let number = |lanes| Single16(f32x16::simd_from(simd, lanes));
-        let of = |lanes: &Lanes<f32>| number(_mm512_permutexvar_ps(rays, lanes.load()));
-        let [cx, cy, cz, radius] =
+        let [x, y, z, radius] =
             gather(spheres, indices).map(|lanes| Double16::widened(number(lanes)));
-        let [x, y, z] = self
-            .direction
-            .each_ref()
-            .map(|lanes| Double16::widened(of(lanes)));
-        let [ox, oy, oz] = self
-            .origin
-            .each_ref()
-            .map(|lanes| Double16::widened(of(lanes)));
-        let o = Lane3 {
-            x: ox - cx,
-            y: oy - cy,
-            z: oz - cz,
-        };
-        let quadratic = double::Quadratic::of(o, radius, Lane3 { x, y, z });
-        let (near, far) = quadratic.roots();
-        let (near, far) = (near.rounded(), far.rounded());
+        let center = Lane3 { x, y, z };
+        let quadratic = double::Quadratic::of(line.origin, line.direction, center, radius);
+        let roots = quadratic.roots();
+        let (near, far) = (roots.near.rounded(), roots.far.rounded());
+        let of = |lanes: &Lanes<f32>| number(_mm512_permutexvar_ps(rays, lanes.load()));
         let (t, is_within) = root_within(near, far, of(&self.t_min), of(&self.end));
         let hits = is_within & quadratic.meets().narrowed(simd);
         let none = Single16::splat(simd, Hit::NONE_T);
         Single16::select(hits, t, none).0.into()
+    }
+
+    /// The same on [`Rung::Certified`] in 64-bit floats, and for which pairs these are certain.
+    #[inline]
+    // As for `robust`.
+    #[target_feature(
+        enable = "adx,aes,avx512bitalg,avx512bw,avx512cd,avx512dq,avx512f,avx512ifma,avx512vbmi,avx512vbmi2,avx512vl,avx512vnni,avx512vpopcntdq,bmi1,bmi2,cmpxchg16b,fma,fxsr,gfni,lzcnt,movbe,pclmulqdq,popcnt,rdrand,rdseed,sha,vaes,vpclmulqdq,xsave,xsavec,xsaveopt,xsaves"
+    )]
+    pub(super) fn certified(
+        &self,
+        Avx512(simd): Avx512,
+        rays: __m512i,
+        spheres: &[Sphere],
+        indices: __m512i,
+    ) -> (__m512, __mmask16) {
+        let line = self.wide_rays(Avx512(simd), rays);
+        let number = |lanes| Single16(f32x16::simd_from(simd, lanes));
+        let [x, y, z, radius] =
+            gather(spheres, indices).map(|lanes| Double16::widened(number(lanes)));
+        let answer = line.intersect(Lane3 { x, y, z }, radius);
+        let is_certain = answer.is_certain.narrowed(simd).to_bitmask();
+        (answer.t.rounded().0.into(), is_certain as __mmask16)
+    }
+
+    /// The rays of sixteen pairs in 64-bit floats.
+    #[inline]
+    // As for `robust`.
+    #[target_feature(
+        enable = "adx,aes,avx512bitalg,avx512bw,avx512cd,avx512dq,avx512f,avx512ifma,avx512vbmi,avx512vbmi2,avx512vl,avx512vnni,avx512vpopcntdq,bmi1,bmi2,cmpxchg16b,fma,fxsr,gfni,lzcnt,movbe,pclmulqdq,popcnt,rdrand,rdseed,sha,vaes,vpclmulqdq,xsave,xsavec,xsaveopt,xsaves"
+    )]
+    fn wide_rays(&self, Avx512(simd): Avx512, rays: __m512i) -> WideRay<Double16<x86::Avx512>> {
+        let of = |lanes: &Lanes<f32>| {
+            let number = _mm512_permutexvar_ps(rays, lanes.load());
+            Double16::widened(Single16(f32x16::simd_from(simd, number)))
+        };
+        let [x, y, z] = self.direction.each_ref().map(of);
+        let direction = Lane3 { x, y, z };
+        let [x, y, z] = self.origin.each_ref().map(of);
+        WideRay {
+            origin: Lane3 { x, y, z },
+            direction,
+            t_min: of(&self.t_min),
+            t_max: of(&self.end),
+        }
+    }
+
+    /// A ray as it was taken, up to its [end](Ray::end).
+    pub(super) fn ray(&self, ray: usize) -> Ray {
+        let ray = ray % LANES;
+        let of = |lanes: &[Lanes<f32>; 3]| Vec3::from_array(lanes.each_ref().map(|of| of.0[ray]));
+        Ray::within(
+            of(&self.origin),
+            of(&self.direction),
+            self.t_min.0[ray],
+            self.end.0[ray],
+        )
     }
 }
 

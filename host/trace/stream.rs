@@ -14,12 +14,13 @@ use std::mem::MaybeUninit;
 use fearless_simd::SimdMask;
 use spherule_kernel::accel::slabs::{Boxes, Slabs};
 use spherule_kernel::lane::Lane as _;
+use spherule_kernel::precision::intersect;
 use spherule_kernel::{Hit, Ray, Rung, Sphere};
 
 use super::avx512::{Avx512, LANES};
 use super::boxes::near_and_far;
 use super::levels::{Group, Levels};
-use super::search::{Query, Resting, left};
+use super::search::{Query, Resting};
 use super::sixteen::{RayPlanes, Sixteen, end_of, is_plain};
 use super::walk::{self, Features};
 use crate::lanes::Single16;
@@ -28,11 +29,6 @@ use crate::lanes::Single16;
 const MOST: usize = 64 * LANES;
 /// The most boxes at the bottom of two levels.
 const MOST_ALONE: usize = 1024;
-/// Whether the rung's formula is there in lanes.
-pub(super) fn has_lanes(rung: Rung) -> bool {
-    matches!(rung, Rung::Robust | Rung::Double)
-}
-
 /// The most pairs of rays and spheres that wait for the rung.
 const WAITING: usize = 1024;
 
@@ -95,20 +91,10 @@ pub(super) fn trace<const ANY: bool>(
         }
         if scratch.pairs.len() > MOST {
             walk::trace::<ANY, _>(Features::Avx512(wide), query, rays, lefts, spheres, put);
-        } else if has_lanes(query.rung) {
+        } else {
             let nearest = scratch.evaluate(wide, query.rung, levels, spheres);
             for index in 0..rays.len() {
                 put(index, nearest.hit(index));
-            }
-        } else {
-            let mut pairs = scratch.pairs.iter().peekable();
-            for (index, ray) in rays.iter().enumerate() {
-                let mut search = query.search(ray, left(lefts, index));
-                while let Some(pair) = pairs.next_if(|pair| of_pair(**pair).0 == index) {
-                    let (first, count) = levels.spheres[of_pair(*pair).1];
-                    search.test_wide::<ANY>(wide, spheres, first, count);
-                }
-                put(index, search.finish::<ANY>());
             }
         }
     }
@@ -247,6 +233,7 @@ impl Scratch {
         spheres: &[Sphere],
     ) -> Nearest {
         let mut nearest = Nearest([i64::MAX; LANES]);
+        let mut ends = self.sixteen.ends();
         let pairs = &self.pairs[..];
         // As many boxes as there is certainly room for.
         for some in pairs.chunks(WAITING / LANES) {
@@ -272,11 +259,92 @@ impl Scratch {
             indices.finish();
             // SAFETY: the machine has every feature of AVX-512 that this needs, as the proof says.
             unsafe {
-                let (rays, found) = (&self.rays, &self.spheres);
+                let (rays, found) = (&mut self.rays, &mut self.spheres);
+                if rung.is_bounded() && rung != Rung::Robust {
+                    keep_open(wide, &self.sixteen, &mut ends, rays, found, spheres);
+                }
                 nearest.evaluate(wide, rung, &self.sixteen, rays, found, spheres);
             };
         }
         nearest
+    }
+}
+
+/// Keeps the pairs of rays and spheres about which the rung must be asked: those that
+/// [`bounds`](spherule_kernel::cull::bounds) leave open, mostly the nearest sphere of each ray.
+/// `ends` are what is behind a certain hit of each ray.
+#[inline]
+// As for [`Nearest::evaluate`].
+#[target_feature(
+    enable = "adx,aes,avx512bitalg,avx512bw,avx512cd,avx512dq,avx512f,avx512ifma,avx512vbmi,avx512vbmi2,avx512vl,avx512vnni,avx512vpopcntdq,bmi1,bmi2,cmpxchg16b,fma,fxsr,gfni,lzcnt,movbe,pclmulqdq,popcnt,rdrand,rdseed,sha,vaes,vpclmulqdq,xsave,xsavec,xsaveopt,xsaves"
+)]
+fn keep_open(
+    wide: Avx512,
+    sixteen: &Sixteen,
+    ends: &mut [f32; LANES],
+    rays: &mut Vec<u32>,
+    indices: &mut Vec<u32>,
+    spheres: &[Sphere],
+) {
+    let mut lows = [0.0; WAITING + LANES];
+    for at in (0..rays.len()).step_by(LANES) {
+        let (there, some_rays, some_indices) = some_of(rays, indices, at);
+        let (hits, high, low) = sixteen.bounds(wide, some_rays, spheres, some_indices);
+        let counts = there & !sixteen.have_left(some_rays, some_indices);
+        let low = _mm512_mask_mov_ps(_mm512_set1_ps(f32::NAN), counts, low);
+        let (mut highs, mut of) = ([0.0_f32; LANES], [0_u32; LANES]);
+        let none = _mm512_set1_ps(f32::INFINITY);
+        let high = _mm512_mask_mov_ps(none, hits & counts, high);
+        // SAFETY: there is room for sixteen more than pairs wait, and for sixteen.
+        unsafe {
+            _mm512_storeu_ps(lows.as_mut_ptr().add(at), low);
+            _mm512_storeu_ps(highs.as_mut_ptr(), high);
+            _mm512_storeu_epi32(of.as_mut_ptr().cast(), some_rays);
+        }
+        for (high, ray) in highs.into_iter().zip(of) {
+            let end = &mut ends[ray as usize % LANES];
+            *end = if high < *end { high } else { *end };
+        }
+    }
+    // SAFETY: sixteen floats.
+    let ends = unsafe { _mm512_loadu_ps(ends.as_ptr()) };
+    let mut kept = 0;
+    for at in (0..rays.len()).step_by(LANES) {
+        let (there, some_rays, some_indices) = some_of(rays, indices, at);
+        // SAFETY: as above.
+        let low = unsafe { _mm512_loadu_ps(lows.as_ptr().add(at)) };
+        let end = _mm512_permutexvar_ps(some_rays, ends);
+        let is_open = there & _mm512_cmp_ps_mask::<_CMP_LE_OQ>(low, end);
+        // SAFETY: not more are kept than were read, and the lists have room for sixteen more.
+        unsafe {
+            let to = rays.as_mut_ptr().add(kept);
+            _mm512_storeu_epi32(to.cast(), _mm512_maskz_compress_epi32(is_open, some_rays));
+            let to = indices.as_mut_ptr().add(kept);
+            _mm512_storeu_epi32(
+                to.cast(),
+                _mm512_maskz_compress_epi32(is_open, some_indices),
+            );
+        }
+        kept += is_open.count_ones() as usize;
+    }
+    rays.truncate(kept);
+    indices.truncate(kept);
+}
+
+/// Up to sixteen pairs of two lists, from `at` on, and which there are. The others are of the first
+/// ray and the first sphere.
+#[inline]
+#[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
+fn some_of(rays: &[u32], indices: &[u32], at: usize) -> (__mmask16, __m512i, __m512i) {
+    let left = rays.len().min(indices.len()).saturating_sub(at).min(LANES);
+    let there = _bzhi_u32(0xffff, left as u32) as __mmask16;
+    // SAFETY: only lanes within both lists are read.
+    unsafe {
+        (
+            there,
+            _mm512_maskz_loadu_epi32(there, rays.as_ptr().wrapping_add(at).cast()),
+            _mm512_maskz_loadu_epi32(there, indices.as_ptr().wrapping_add(at).cast()),
+        )
     }
 }
 
@@ -390,19 +458,33 @@ impl Nearest {
         indices: &[u32],
         spheres: &[Sphere],
     ) {
-        for (rays, indices) in rays.chunks(LANES).zip(indices.chunks(LANES)) {
-            let there = _bzhi_u32(0xffff, rays.len() as u32) as __mmask16;
-            // SAFETY: only lanes within both lists are read.
-            let (some_rays, some_indices) = unsafe {
-                (
-                    _mm512_maskz_loadu_epi32(there, rays.as_ptr().cast()),
-                    _mm512_maskz_loadu_epi32(there, indices.as_ptr().cast()),
-                )
+        for at in (0..rays.len()).step_by(LANES) {
+            let (there, some_rays, some_indices) = some_of(rays, indices, at);
+            let one_by_one = |open: __mmask16, t: __m512| {
+                let mut found = [0.0; LANES];
+                // SAFETY: room for sixteen.
+                unsafe { _mm512_storeu_ps(found.as_mut_ptr(), t) };
+                let mut open = open & there;
+                while open != 0 {
+                    let lane = open.trailing_zeros() as usize;
+                    open &= open - 1;
+                    let ray = sixteen.ray(rays[at + lane] as usize);
+                    let sphere = spheres[indices[at + lane] as usize];
+                    found[lane] = intersect(rung.to_u32(), sphere, &ray);
+                }
+                // SAFETY: sixteen floats.
+                unsafe { _mm512_loadu_ps(found.as_ptr()) }
             };
-            let t = if rung == Rung::Robust {
-                sixteen.robust(wide, some_rays, spheres, some_indices)
-            } else {
-                sixteen.double(wide, some_rays, spheres, some_indices)
+            let t = match rung {
+                Rung::Robust => sixteen.robust(wide, some_rays, spheres, some_indices),
+                Rung::Double => sixteen.double(wide, some_rays, spheres, some_indices),
+                Rung::Certified => {
+                    let (t, are_certain) =
+                        sixteen.certified(wide, some_rays, spheres, some_indices);
+                    let open = there & !are_certain;
+                    if open == 0 { t } else { one_by_one(open, t) }
+                }
+                Rung::Textbook | Rung::Compensated => one_by_one(there, _mm512_setzero_ps()),
             };
             // Makes −0 into +0.
             let t = _mm512_add_ps(t, _mm512_setzero_ps());

@@ -4,11 +4,16 @@
 //! and for single rays, and a vector of either in the CPU's packets. The host implements the trait
 //! for vectors. Each operation is rounded as IEEE 754 says, and none is fused with another, so that
 //! a lane of a vector has the same bits as a single number. The exceptions are
-//! [`Lane::mul_add_rough`] and [`Lane::mul_sub_rough`], which are for bounds.
+//! [`Lane::mul_add_rough`] and [`Lane::mul_sub_rough`], which are for bounds. A GPU's driver may
+//! fuse and simplify all but [`Lane::add_strict`] and [`Lane::sub_strict`].
 
 use core::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
 use glam::Vec3;
+
+use crate::arithmetic::strict::{add, sub};
+#[cfg(any(not(target_arch = "spirv"), feature = "f64"))]
+use crate::arithmetic::strict::{add_wide, sub_wide};
 
 /// A number, or several side by side.
 pub trait Lane:
@@ -27,6 +32,8 @@ pub trait Lane:
 
     /// This number in each lane; `self` says only how many lanes there are.
     fn splat(self, value: f32) -> Self;
+    /// Rounded to a 32-bit float.
+    fn to_single(self) -> Self;
     /// The absolute value.
     fn abs(self) -> Self;
     /// The square root; NaN below zero.
@@ -39,6 +46,16 @@ pub trait Lane:
     fn simd_gt(self, other: Self) -> Self::Mask;
     /// `self ≥ other`.
     fn simd_ge(self, other: Self) -> Self::Mask;
+    /// The sum, rounded once, whatever a driver would make of it: for rounding errors.
+    #[inline(always)]
+    fn add_strict(self, other: Self) -> Self {
+        self + other
+    }
+    /// The difference, as [`Lane::add_strict`].
+    #[inline(always)]
+    fn sub_strict(self, other: Self) -> Self {
+        self - other
+    }
     /// `self · factor + term`, rounded once or twice, whichever is faster; for bounds that hold
     /// either way.
     #[inline(always)]
@@ -50,6 +67,8 @@ pub trait Lane:
     fn mul_sub_rough(self, factor: Self, term: Self) -> Self {
         self * factor - term
     }
+    /// Whether the mask is true in every lane.
+    fn are_all(mask: Self::Mask) -> bool;
     /// `yes` where the mask is true, else `no`.
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
     /// As [`Lane::select`], for pairs that single numbers compute only if they are selected: a
@@ -69,13 +88,28 @@ pub trait Lane:
 }
 
 macro_rules! scalar {
-    ($float:ty) => {
+    ($float:ty, $add:ident, $sub:ident) => {
         impl Lane for $float {
             type Mask = bool;
 
             #[inline(always)]
             fn splat(self, value: f32) -> Self {
                 value.into()
+            }
+
+            #[inline(always)]
+            fn add_strict(self, other: Self) -> Self {
+                $add(self, other)
+            }
+
+            #[inline(always)]
+            fn sub_strict(self, other: Self) -> Self {
+                $sub(self, other)
+            }
+
+            #[inline(always)]
+            fn to_single(self) -> Self {
+                Self::from(self as f32)
             }
 
             #[inline(always)]
@@ -112,6 +146,11 @@ macro_rules! scalar {
             }
 
             #[inline(always)]
+            fn are_all(mask: bool) -> bool {
+                mask
+            }
+
+            #[inline(always)]
             fn select(mask: bool, yes: Self, no: Self) -> Self {
                 if mask { yes } else { no }
             }
@@ -128,9 +167,9 @@ macro_rules! scalar {
     };
 }
 
-scalar!(f32);
+scalar!(f32, add, sub);
 #[cfg(any(not(target_arch = "spirv"), feature = "f64"))]
-scalar!(f64);
+scalar!(f64, add_wide, sub_wide);
 
 /// Three coordinates in lanes.
 #[derive(Clone, Copy, Debug)]
@@ -181,6 +220,17 @@ impl<L: Lane> Lane3<L> {
         }
     }
 
+    /// The difference.
+    #[inline(always)]
+    #[must_use]
+    pub fn minus(self, other: Self) -> Self {
+        Self {
+            x: self.x - other.x,
+            y: self.y - other.y,
+            z: self.z - other.z,
+        }
+    }
+
     /// Each coordinate times a number.
     #[inline(always)]
     #[must_use]
@@ -213,6 +263,18 @@ impl Lane3<f32> {
             x: vector.x,
             y: vector.y,
             z: vector.z,
+        }
+    }
+
+    /// In 64 bits.
+    #[cfg(any(not(target_arch = "spirv"), feature = "f64"))]
+    #[inline(always)]
+    #[must_use]
+    pub fn widened(self) -> Lane3<f64> {
+        Lane3 {
+            x: self.x.into(),
+            y: self.y.into(),
+            z: self.z.into(),
         }
     }
 

@@ -30,7 +30,14 @@ impl Surface {
         let radius = sphere.radius();
         // Relative to the centre from the start: the digits that a large |C| would take from the
         // point are still there for the normal.
-        let normal = unit((ray.origin - center) + ray.direction * t);
+        let outward = (ray.origin - center) + ray.direction * t;
+        let (squared, radius_squared) = (outward.dot(outward), radius * radius);
+        let is_there = (squared * 4.0 >= radius_squared) & (squared <= radius_squared * 4.0);
+        let normal = if is_there {
+            unit(outward)
+        } else {
+            Self::normal_where_entered(ray, sphere)
+        };
         // Projected back onto the sphere: what is left of the error does not depend on t.
         let point = center + normal * radius;
         let size = center.abs().max_element() + radius.abs();
@@ -38,6 +45,25 @@ impl Surface {
             point,
             normal,
             error: Self::error(size),
+        }
+    }
+
+    /// The normal where the ray enters a sphere, from the foot of the perpendicular, for a sphere
+    /// so small and so far away that the parameter has no digit of it. Against the ray if the foot
+    /// has none either.
+    #[inline]
+    fn normal_where_entered(ray: &Ray, sphere: Sphere) -> Vec3 {
+        let along = unit(ray.direction);
+        let o = ray.origin - sphere.center();
+        let foot = o - along * o.dot(along);
+        let half_chord = (sphere.radius() * sphere.radius() - foot.dot(foot))
+            .max(0.0)
+            .sqrt();
+        let normal = unit(foot - along * half_chord);
+        if normal.dot(normal) > 0.0 {
+            normal
+        } else {
+            -along
         }
     }
 

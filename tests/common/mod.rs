@@ -69,6 +69,11 @@ pub fn open_through_naga(adapter: &wgpu::Adapter) -> Gpu {
     open(adapter, options)
 }
 
+/// The adapter, opened so that rungs do without 64-bit floats.
+pub fn open_without_f64(adapter: &wgpu::Adapter) -> Gpu {
+    open(adapter, GpuOptions::default().without_f64(true))
+}
+
 /// Whether there is no adapter. If so, says that `test` is skipped.
 pub fn skips(test: &str) -> bool {
     let none = all_adapters().is_empty();

@@ -13,10 +13,9 @@ use super::budget::{Budget, GoesOn, Reached, StoppedBy};
 use super::preview::Preview;
 use super::{Prepared, Progress, Sampled, Settings};
 use crate::device::canary::Canary;
-use crate::device::{Access, Buffer, Gpu, Kernel, Staging};
+use crate::device::{Access, Buffer, Gpu, Kernel, Staging, rung};
 use crate::error::{Error, Result};
 use crate::film;
-use crate::kernel_module;
 use crate::render::Timings;
 use crate::render::launch::check_path_launch;
 use crate::render::pace::Pace;
@@ -51,7 +50,7 @@ const RAYS_OF_WAYS: u64 = 9;
 pub fn compile(gpu: &Gpu, prepared: &Prepared, settings: &Settings) -> Result<Kernel> {
     Canary::require_on_gpu(gpu, settings.rung)?;
     let is_exact = prepared.compiled == prepared.shown;
-    let module = kernel_module::for_rung(settings.rung)?
+    let module = rung::module(gpu, settings.rung)?
         .specialise(Effects::SPEC_ID, prepared.compiled.to_bits())?
         .specialise(Effects::IS_EXACT_SPEC_ID, is_exact.into())?
         .specialise(Node::SPEC_ID, u32::from(!prepared.nodes.is_empty()))?;

@@ -20,8 +20,10 @@
 //! arithmetic has none, and must find the same hits with a tree as without. So each box is widened
 //! by what the rung may be off. With D the distance from O to the farthest corner of the extent:
 //! * [`robust`](crate::precision::robust): 32u D. The foot of its perpendicular is off by 12u|o|.
-//!   An error of 4u(o·o + r²) in c puts its t off by at most 16u max(|o|, r), because |b| is at
-//!   least |o|/2, or else r is at least 0.86|o|.
+//!   An error e = 4u(o·o + r²) in c puts its t off by at most 16u max(|o|, r) where |b| is at least
+//!   |o|/2, or else r is at least 0.86|o|. In that case let s = |q|/|d|. Both roots are within s of
+//!   the origin, so that |p·p − r²| ≤ 3s² + |c| at either; and c/q is off by e/s, which changes p·p
+//!   by at most 4e where s² ≥ e. So a hit is within 8e/r of the sphere.
 //! * [`textbook`](crate::precision::textbook): √(r² + 24u D²) − r, with r the smallest radius. Its
 //!   hits are on a sphere whose r² is off by 24u D².
 //!

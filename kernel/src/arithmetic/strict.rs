@@ -52,3 +52,14 @@ strict!(
     /// The product, rounded to nearest.
     mul, f32, "32", "OpFMul", *
 );
+
+#[cfg(any(not(target_arch = "spirv"), feature = "f64"))]
+strict!(
+    /// The sum in 64 bits, rounded to nearest.
+    add_wide, f64, "64", "OpFAdd", +
+);
+#[cfg(any(not(target_arch = "spirv"), feature = "f64"))]
+strict!(
+    /// The difference in 64 bits, rounded to nearest.
+    sub_wide, f64, "64", "OpFSub", -
+);

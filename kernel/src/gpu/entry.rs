@@ -24,6 +24,8 @@ use crate::probe::canary::{WideOutcome, sing_wide};
 use crate::probe::glass_walk::{Walk, walk_inside};
 use crate::probe::layout;
 use crate::probe::throughput::products;
+#[cfg(any(not(target_arch = "spirv"), feature = "f64"))]
+use crate::probe::throughput::wide_products;
 use crate::shading::{Seen, shade};
 use crate::{
     Accumulator, Effects, Hit, Launch, Light, Material, PathLaunch, Pixel, Ray, Shading, Sphere,
@@ -393,6 +395,21 @@ pub fn measure_multiplications(
     if index < sums.len() && factor_and_rounds.len() >= 2 {
         let rounds = factor_and_rounds[1] as u32;
         sums[index] = products(index as f32, factor_and_rounds[0], rounds);
+    }
+}
+
+/// The same in 64-bit floats.
+#[cfg(any(not(target_arch = "spirv"), feature = "f64"))]
+#[spirv(compute(threads(64), entry_point_name = "measure_wide_multiplications"))]
+pub fn measure_wide_multiplications(
+    #[spirv(global_invocation_id)] id: UVec3,
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 0)] factor_and_rounds: &[f32],
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 1)] sums: &mut [f32],
+) {
+    let index = id.x as usize;
+    if index < sums.len() && factor_and_rounds.len() >= 2 {
+        let rounds = factor_and_rounds[1] as u32;
+        sums[index] = wide_products(index as f32, factor_and_rounds[0], rounds);
     }
 }
 

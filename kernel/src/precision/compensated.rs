@@ -142,6 +142,22 @@ impl Quadratic {
     #[inline]
     #[must_use]
     pub fn roots(&self) -> (f32, f32) {
+        let roots = self.raised_roots();
+        let (inner, outer) = (
+            self.unscale(roots.inner.high),
+            self.unscale(roots.outer.high),
+        );
+        if roots.leaves {
+            (-outer, -inner)
+        } else {
+            (inner, outer)
+        }
+    }
+
+    /// The roots' magnitudes before they are unscaled. The discriminant must not be negative.
+    #[inline]
+    #[must_use]
+    pub(super) fn raised_roots(&self) -> RaisedRoots {
         let root = self.discriminant.square_root();
         let leaves = self.b.high >= 0.0;
         // |q|
@@ -150,17 +166,18 @@ impl Quadratic {
         } else {
             root.minus(self.b)
         };
-        let outer = self.unscale(mul(size.divided_by(self.a).high, RAISED));
+        let outer = scale(size.divided_by(self.a), RAISED);
         // While it is scaled, the root that is nearer to zero must not be subnormal.
         let inner = if size.high > 0.0 {
-            self.unscale(scale(self.c, RAISED).divided_by(size).high)
+            scale(self.c, RAISED).divided_by(size)
         } else {
-            0.0
+            DoubleSingle::default()
         };
-        if leaves {
-            (-outer, -inner)
-        } else {
-            (inner, outer)
+        RaisedRoots {
+            leaves,
+            size: size.high,
+            outer,
+            inner,
         }
     }
 
@@ -170,9 +187,9 @@ impl Quadratic {
     /// are lost in a subnormal intermediate result; and no result is infinite that is finite in the
     /// end.
     #[inline]
-    fn unscale(&self, raised: f32) -> f32 {
-        let exponent = self.length_scale.to_bits() >> 23;
-        let inverse = f32::from_bits(254_u32.wrapping_sub(exponent).max(1) << 23);
+    #[must_use]
+    pub(super) fn unscale(&self, raised: f32) -> f32 {
+        let inverse = reciprocal(self.length_scale);
         let larger = self.direction_scale.max(inverse);
         let smaller = self.direction_scale.min(inverse);
         let lower = 1.0 / RAISED;
@@ -208,37 +225,66 @@ impl Quadratic {
         -self.discriminant.high > self.discriminant_error()
     }
 
-    /// Whether Δ is certainly positive, and |q| is accurate enough for t to be within 1 ulp.
+    /// Whether Δ is certainly positive.
     #[inline]
     #[must_use]
-    pub fn size_is_certain(&self) -> bool {
-        let error = self.discriminant_error();
-        let root = self.discriminant.high.max(0.0).sqrt();
-        let size = self.b.high.abs() + root;
-        (self.discriminant.high > error)
-            & (error <= root * size * two_to_minus(26))
-            & (size * size >= self.size_squared() * two_to_minus(36))
+    pub fn meets_for_certain(&self) -> bool {
+        self.discriminant.high > self.discriminant_error()
     }
 
-    /// Whether c is accurate enough for t to be within 1 ulp.
+    /// A bound on the relative error of |q|, where Δ is positive, and of its quotient by a. √Δ is
+    /// off by E₂/√Δ, and b by 16u² |o||d|. Quotient and root are off by 2⁻³⁸ of themselves if the
+    /// device's own are off by 16 units in the last place, the most that the canary lets pass.
     #[inline]
     #[must_use]
-    pub fn c_is_certain(&self) -> bool {
+    pub fn size_error(&self) -> f32 {
+        let root = self.discriminant.high.max(0.0).sqrt();
+        let size = self.b.high.abs() + root;
+        let of_root = self.discriminant_error() / (root * size);
+        let of_b = self.size_squared().sqrt() * two_to_minus(43) / size;
+        of_root + of_b + two_to_minus(37)
+    }
+
+    /// A bound on the error of c: 16u² (o·o + r²).
+    #[inline]
+    #[must_use]
+    pub fn c_error(&self) -> f32 {
         let oo_and_rr = self.r * self.r
             + self.o[0].high * self.o[0].high
             + self.o[1].high * self.o[1].high
             + self.o[2].high * self.o[2].high;
-        self.c.high.abs() >= oo_and_rr * two_to_minus(19)
+        oo_and_rr * two_to_minus(44)
     }
 }
 
+/// The magnitudes of the two roots of the scaled quadratic, times [`RAISED`].
+#[derive(Clone, Copy, Debug)]
+pub(super) struct RaisedRoots {
+    /// Whether the line's middle is not ahead: the roots are −`outer` and −`inner` then, otherwise
+    /// `inner` and `outer`.
+    pub(super) leaves: bool,
+    /// |q|
+    pub(super) size: f32,
+    /// |q|/a
+    pub(super) outer: DoubleSingle,
+    /// c/|q|
+    pub(super) inner: DoubleSingle,
+}
+
 /// What roots are multiplied by before they are unscaled: 2⁴⁸.
-const RAISED: f32 = (1_u64 << 48) as f32;
+pub(super) const RAISED: f32 = (1_u64 << 48) as f32;
 
 /// 2⁻ⁿ for n below 127.
 #[inline]
-const fn two_to_minus(n: u32) -> f32 {
+pub(super) const fn two_to_minus(n: u32) -> f32 {
     f32::from_bits((127 - n) << 23)
+}
+
+/// One over a power of two, exactly, or the smallest normal float if it is not one.
+#[inline]
+fn reciprocal(power_of_two: f32) -> f32 {
+    let exponent = power_of_two.to_bits() >> 23;
+    f32::from_bits(254_u32.wrapping_sub(exponent).max(1) << 23)
 }
 
 /// A pair times a power of two.

@@ -11,7 +11,7 @@
 //! | [`robust`] | f32, Δ from the perpendicular, roots without cancellation | every day |
 //! | [`compensated`] | pairs of f32, about 48 bits | about the digits of f64, on any device |
 //! | [`double`] | f64 | devices that have f64 |
-//! | [`certified`] | f32 with a bound on its error, more digits only where it cannot decide | right answers everywhere |
+//! | [`certified`] | f64 or f32 with bounds on their errors, more digits only where they cannot decide | the exact answers, rounded once |
 
 pub mod certified;
 pub mod compensated;
@@ -40,6 +40,8 @@ pub enum Needs {
     Nothing,
     /// Exact error terms of sums and products of 32-bit floats.
     ErrorTerms,
+    /// The same; 64-bit floats save time where the device has fast ones.
+    ErrorTermsAtLeast,
     /// 64-bit floats.
     DoubleFloats,
 }
@@ -154,7 +156,7 @@ rungs! {
     /// [`Double`].
     lazily Double = 3, "double", "64-bit floats, where the device has them", DoubleFloats;
     /// [`Certified`].
-    lazily Certified = 4, "certified", "32-bit floats with a bound on their error, and more digits only where that cannot decide", ErrorTerms;
+    lazily Certified = 4, "certified", "The exact answer, rounded once: few digits with a bound on their error, more only where those cannot decide", ErrorTermsAtLeast;
 }
 
 impl Rung {

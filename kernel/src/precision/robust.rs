@@ -85,10 +85,20 @@ impl<L: Lane> Quadratic<L> {
     }
 
     /// The other root if the centre is ahead, otherwise its negative; NaN if both roots are zero.
+    ///
+    /// It is not larger than the outer one. Where it would be, c is all but rounding, for an origin
+    /// on the sphere and a line that touches it there; then it is as large.
     #[inline(always)]
     #[must_use]
     pub fn inner(&self) -> L {
-        self.c / self.size
+        let inner = self.c / self.size;
+        let is_too_large = (self.c.abs() * self.a).simd_gt(self.size * self.size);
+        if L::are_all(!is_too_large) {
+            return inner;
+        }
+        let (outer, zero) = (self.outer(), self.b.splat(0.0));
+        let limited = L::select(self.c.simd_lt(zero), -outer, outer);
+        L::select(is_too_large, limited, inner)
     }
 
     /// Both roots, the smaller first.

@@ -69,6 +69,8 @@ pub fn sing(operands: Operands) -> Outcome {
 pub struct WideOutcome {
     /// 2³⁰ · a + b, where 32-bit floats would lose b.
     pub sum: f64,
+    /// 2⁴⁵ · a + b as its rounded value and the rounding error.
+    pub large_sum: [f64; 2],
     /// a · b, which 64 bits hold exactly.
     pub product: f64,
     /// a / b.
@@ -84,8 +86,11 @@ pub struct WideOutcome {
 pub fn sing_wide(operands: Operands) -> WideOutcome {
     let (a, b) = (f64::from(operands.a), f64::from(operands.b));
     let root = a.abs().sqrt();
+    // 2⁴⁵
+    let (large_sum, rest) = double::two_sum(a * f64::from(f32::from_bits((127 + 45) << 23)), b);
     WideOutcome {
         sum: a * 1_073_741_824.0 + b,
+        large_sum: [large_sum, rest],
         product: a * b,
         quotient: double::quotient(a, b, 1.0 / b),
         root: double::square_root(a.abs(), root, 1.0 / root),

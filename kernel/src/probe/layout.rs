@@ -150,6 +150,7 @@ layouts! {
     "Walk.cosine" = offset_of!(Walk, cosine);
     "size of WideOutcome" = size_of::<WideOutcome>();
     "WideOutcome.sum" = offset_of!(WideOutcome, sum);
+    "WideOutcome.large_sum" = offset_of!(WideOutcome, large_sum);
     "WideOutcome.product" = offset_of!(WideOutcome, product);
     "WideOutcome.quotient" = offset_of!(WideOutcome, quotient);
     "WideOutcome.root" = offset_of!(WideOutcome, root);

@@ -3,6 +3,9 @@
 
 use glam::Vec4;
 
+/// The number of multiplications in one round of [`wide_products`].
+pub const WIDE_MULTIPLICATIONS: u32 = 32;
+
 /// The number of multiplications in one round of [`products`].
 pub const MULTIPLICATIONS: u32 = 128;
 
@@ -22,4 +25,23 @@ pub fn products(first: f32, factor: f32, rounds: u32) -> f32 {
         d = d * factor * factor * factor * factor * factor * factor * factor * factor;
     }
     (a + b + c + d).element_sum()
+}
+
+/// As [`products`], of four products in 64-bit floats.
+#[cfg(any(not(target_arch = "spirv"), feature = "f64"))]
+#[inline]
+#[must_use]
+pub fn wide_products(first: f32, factor: f32, rounds: u32) -> f32 {
+    let factor = f64::from(factor);
+    let mut a = f64::from(first);
+    let (mut b, mut c, mut d) = (a + 1.0, a + 2.0, a + 3.0);
+    let mut left = rounds;
+    while left > 0 {
+        left -= 1;
+        a = a * factor * factor * factor * factor * factor * factor * factor * factor;
+        b = b * factor * factor * factor * factor * factor * factor * factor * factor;
+        c = c * factor * factor * factor * factor * factor * factor * factor * factor;
+        d = d * factor * factor * factor * factor * factor * factor * factor * factor;
+    }
+    (a + b + c + d) as f32
 }

@@ -24,6 +24,15 @@ pub const CALLS: &[Call] = &[
     Call::new("f32 as spherule_kernel::lane::Lane::abs", |s| {
         seen(<f32 as spherule_kernel::lane::Lane>::abs(s.draw()))
     }),
+    Call::new("f32 as spherule_kernel::lane::Lane::add_strict", |s| {
+        seen(<f32 as spherule_kernel::lane::Lane>::add_strict(
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("f32 as spherule_kernel::lane::Lane::are_all", |s| {
+        seen(<f32 as spherule_kernel::lane::Lane>::are_all(s.draw()))
+    }),
     Call::new("f32 as spherule_kernel::lane::Lane::simd_ge", |s| {
         seen(<f32 as spherule_kernel::lane::Lane>::simd_ge(
             s.draw(),
@@ -57,8 +66,26 @@ pub const CALLS: &[Call] = &[
     Call::new("f32 as spherule_kernel::lane::Lane::sqrt", |s| {
         seen(<f32 as spherule_kernel::lane::Lane>::sqrt(s.draw()))
     }),
+    Call::new("f32 as spherule_kernel::lane::Lane::sub_strict", |s| {
+        seen(<f32 as spherule_kernel::lane::Lane>::sub_strict(
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("f32 as spherule_kernel::lane::Lane::to_single", |s| {
+        seen(<f32 as spherule_kernel::lane::Lane>::to_single(s.draw()))
+    }),
     Call::new("f64 as spherule_kernel::lane::Lane::abs", |s| {
         seen(<f64 as spherule_kernel::lane::Lane>::abs(s.draw()))
+    }),
+    Call::new("f64 as spherule_kernel::lane::Lane::add_strict", |s| {
+        seen(<f64 as spherule_kernel::lane::Lane>::add_strict(
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("f64 as spherule_kernel::lane::Lane::are_all", |s| {
+        seen(<f64 as spherule_kernel::lane::Lane>::are_all(s.draw()))
     }),
     Call::new("f64 as spherule_kernel::lane::Lane::simd_ge", |s| {
         seen(<f64 as spherule_kernel::lane::Lane>::simd_ge(
@@ -92,6 +119,15 @@ pub const CALLS: &[Call] = &[
     }),
     Call::new("f64 as spherule_kernel::lane::Lane::sqrt", |s| {
         seen(<f64 as spherule_kernel::lane::Lane>::sqrt(s.draw()))
+    }),
+    Call::new("f64 as spherule_kernel::lane::Lane::sub_strict", |s| {
+        seen(<f64 as spherule_kernel::lane::Lane>::sub_strict(
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("f64 as spherule_kernel::lane::Lane::to_single", |s| {
+        seen(<f64 as spherule_kernel::lane::Lane>::to_single(s.draw()))
     }),
     Call::new("spherule::accel::build::build", |s| {
         seen(spherule::accel::build::build(
@@ -221,6 +257,9 @@ pub const CALLS: &[Call] = &[
             &s.draw(),
             s.draw(),
         ))
+    }),
+    Call::new("spherule::accuracy::measure::Steps as Display", |s| {
+        seen(s.draw::<spherule::accuracy::measure::Steps>().to_string())
     }),
     Call::new("spherule::accuracy::measure::intersect_all", |s| {
         seen(spherule::accuracy::measure::intersect_all(
@@ -642,6 +681,12 @@ pub const CALLS: &[Call] = &[
             s.draw(),
         ))
     }),
+    Call::new("spherule::device::gpu::GpuOptions::without_f64", |s| {
+        seen(spherule::device::gpu::GpuOptions::without_f64(
+            s.draw(),
+            s.draw(),
+        ))
+    }),
     Call::new("spherule::device::kernel::Kernel::workgroup_size", |s| {
         seen(spherule::device::kernel::Kernel::workgroup_size(s.kernel()))
     })
@@ -656,6 +701,14 @@ pub const CALLS: &[Call] = &[
     Call::new("spherule::device::kernel::LaunchTime::best", |s| {
         seen(spherule::device::kernel::LaunchTime::best(&s.draw()))
     }),
+    Call::new("spherule::device::rung::module", |s| {
+        seen(spherule::device::rung::module(s.gpu(), s.draw()))
+    })
+    .on_gpu(),
+    Call::new("spherule::device::rung::uses_f64", |s| {
+        seen(spherule::device::rung::uses_f64(s.gpu(), s.draw()))
+    })
+    .on_gpu(),
     Call::new("spherule::device::spirv::Module as Debug", |s| {
         seen(format!("{:?}", s.draw::<spherule::device::spirv::Module>()))
     }),
@@ -791,9 +844,6 @@ pub const CALLS: &[Call] = &[
     }),
     Call::new("spherule::kernel_module::f64", |_| {
         seen(spherule::kernel_module::f64())
-    }),
-    Call::new("spherule::kernel_module::for_rung", |s| {
-        seen(spherule::kernel_module::for_rung(s.draw()))
     }),
     Call::new("spherule::look::origin", |s| {
         seen(spherule::look::origin(&s.many()[..]))
@@ -1632,11 +1682,23 @@ pub const CALLS: &[Call] = &[
     Call::new("spherule_kernel::arithmetic::strict::add", |s| {
         seen(spherule_kernel::arithmetic::strict::add(s.draw(), s.draw()))
     }),
+    Call::new("spherule_kernel::arithmetic::strict::add_wide", |s| {
+        seen(spherule_kernel::arithmetic::strict::add_wide(
+            s.draw(),
+            s.draw(),
+        ))
+    }),
     Call::new("spherule_kernel::arithmetic::strict::mul", |s| {
         seen(spherule_kernel::arithmetic::strict::mul(s.draw(), s.draw()))
     }),
     Call::new("spherule_kernel::arithmetic::strict::sub", |s| {
         seen(spherule_kernel::arithmetic::strict::sub(s.draw(), s.draw()))
+    }),
+    Call::new("spherule_kernel::arithmetic::strict::sub_wide", |s| {
+        seen(spherule_kernel::arithmetic::strict::sub_wide(
+            s.draw(),
+            s.draw(),
+        ))
     }),
     Call::new("spherule_kernel::arithmetic::turn::turn", |s| {
         seen(spherule_kernel::arithmetic::turn::turn(s.draw()))
@@ -2014,6 +2076,12 @@ pub const CALLS: &[Call] = &[
             s.draw(),
         ))
     }),
+    Call::new("spherule_kernel::lane::Lane3::minus", |s| {
+        seen(spherule_kernel::lane::Lane3::<f32>::minus(
+            s.draw(),
+            s.draw(),
+        ))
+    }),
     Call::new("spherule_kernel::lane::Lane3::minus_scaled", |s| {
         seen(spherule_kernel::lane::Lane3::<f32>::minus_scaled(
             s.draw(),
@@ -2038,6 +2106,9 @@ pub const CALLS: &[Call] = &[
     }),
     Call::new("spherule_kernel::lane::Lane3::to_vec3", |s| {
         seen(spherule_kernel::lane::Lane3::<f32>::to_vec3(s.draw()))
+    }),
+    Call::new("spherule_kernel::lane::Lane3::widened", |s| {
+        seen(spherule_kernel::lane::Lane3::<f32>::widened(s.draw()))
     }),
     Call::new("spherule_kernel::light::Light::environment", |_| {
         seen(spherule_kernel::light::Light::environment())
@@ -2658,6 +2729,15 @@ pub const CALLS: &[Call] = &[
         },
     ),
     Call::new(
+        "spherule_kernel::precision::certified::intersect_in_single",
+        |s| {
+            seen(spherule_kernel::precision::certified::intersect_in_single(
+                s.draw(),
+                &s.draw(),
+            ))
+        },
+    ),
+    Call::new(
         "spherule_kernel::precision::certified::intersect_with_stage",
         |s| {
             seen(spherule_kernel::precision::certified::intersect_with_stage(
@@ -2667,14 +2747,34 @@ pub const CALLS: &[Call] = &[
         },
     ),
     Call::new(
+        "spherule_kernel::precision::certified::wide::WideRay::intersect",
+        |s| {
+            seen(
+                spherule_kernel::precision::certified::wide::WideRay::<f32>::intersect(
+                    &s.draw(),
+                    s.draw(),
+                    s.draw(),
+                ),
+            )
+        },
+    ),
+    Call::new(
         "spherule_kernel::precision::compensated::Compensated as spherule_kernel::precision::root::Precision::intersect",
         |s| {
             seen(<spherule_kernel::precision::compensated::Compensated as spherule_kernel::precision::root::Precision>::intersect(s.draw(), &s.draw()))
         },
     ),
     Call::new(
-        "spherule_kernel::precision::compensated::Quadratic::c_is_certain",
-        |s| seen(spherule_kernel::precision::compensated::Quadratic::c_is_certain(&s.draw())),
+        "spherule_kernel::precision::compensated::Quadratic::c_error",
+        |s| {
+            seen(spherule_kernel::precision::compensated::Quadratic::c_error(
+                &s.draw(),
+            ))
+        },
+    ),
+    Call::new(
+        "spherule_kernel::precision::compensated::Quadratic::meets_for_certain",
+        |s| seen(spherule_kernel::precision::compensated::Quadratic::meets_for_certain(&s.draw())),
     ),
     Call::new(
         "spherule_kernel::precision::compensated::Quadratic::misses_for_certain",
@@ -2698,8 +2798,8 @@ pub const CALLS: &[Call] = &[
         },
     ),
     Call::new(
-        "spherule_kernel::precision::compensated::Quadratic::size_is_certain",
-        |s| seen(spherule_kernel::precision::compensated::Quadratic::size_is_certain(&s.draw())),
+        "spherule_kernel::precision::compensated::Quadratic::size_error",
+        |s| seen(spherule_kernel::precision::compensated::Quadratic::size_error(&s.draw())),
     ),
     Call::new(
         "spherule_kernel::precision::double::Double as spherule_kernel::precision::root::Precision::intersect",
@@ -2720,6 +2820,7 @@ pub const CALLS: &[Call] = &[
             s.draw(),
             s.draw(),
             s.draw(),
+            s.draw(),
         ))
     }),
     Call::new(
@@ -2737,9 +2838,22 @@ pub const CALLS: &[Call] = &[
             s.draw(),
         ))
     }),
+    Call::new("spherule_kernel::precision::double::residual", |s| {
+        seen(spherule_kernel::precision::double::residual::<f32>(
+            s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
     Call::new("spherule_kernel::precision::double::square_root", |s| {
         seen(spherule_kernel::precision::double::square_root::<f32>(
             s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::precision::double::two_sum", |s| {
+        seen(spherule_kernel::precision::double::two_sum::<f32>(
             s.draw(),
             s.draw(),
         ))
@@ -2872,6 +2986,13 @@ pub const CALLS: &[Call] = &[
     }),
     Call::new("spherule_kernel::probe::throughput::products", |s| {
         seen(spherule_kernel::probe::throughput::products(
+            s.draw(),
+            s.draw(),
+            s.few(),
+        ))
+    }),
+    Call::new("spherule_kernel::probe::throughput::wide_products", |s| {
+        seen(spherule_kernel::probe::throughput::wide_products(
             s.draw(),
             s.draw(),
             s.few(),
@@ -3027,11 +3148,10 @@ impl Odd for spherule::accuracy::frames::Frame {
 impl Odd for spherule::accuracy::measure::Escalation {
     fn odd(s: &mut Source) -> Self {
         spherule::accuracy::measure::Escalation {
-            filter: Odd::odd(s),
-            pairs: Odd::odd(s),
-            distilled_c: Odd::odd(s),
-            distilled: Odd::odd(s),
+            own: Odd::odd(s),
+            own_in_single: Odd::odd(s),
             in_a_scene: Odd::odd(s),
+            in_a_scene_in_single: Odd::odd(s),
         }
     }
 }
@@ -3050,6 +3170,18 @@ impl Odd for spherule::accuracy::measure::RungErrors {
             normal_degrees: Odd::odd(s),
             histogram: Odd::odd(s),
             worst: Odd::odd(s),
+        }
+    }
+}
+
+impl Odd for spherule::accuracy::measure::Steps {
+    fn odd(s: &mut Source) -> Self {
+        spherule::accuracy::measure::Steps {
+            wide: Odd::odd(s),
+            filter: Odd::odd(s),
+            pairs: Odd::odd(s),
+            distilled_c: Odd::odd(s),
+            distilled: Odd::odd(s),
         }
     }
 }
@@ -3182,6 +3314,7 @@ impl Odd for spherule::device::canary::Canary {
             finds_nan: Odd::odd(s),
             keeps_subnormals: Odd::odd(s),
             wide: Odd::odd(s),
+            wide_sums: Odd::odd(s),
         }
     }
 }
@@ -3765,6 +3898,17 @@ impl Odd for spherule_kernel::precision::Rung {
     }
 }
 
+impl Odd for spherule_kernel::precision::certified::wide::WideRay<f32> {
+    fn odd(s: &mut Source) -> Self {
+        spherule_kernel::precision::certified::wide::WideRay::<f32> {
+            origin: Odd::odd(s),
+            direction: Odd::odd(s),
+            t_min: Odd::odd(s),
+            t_max: Odd::odd(s),
+        }
+    }
+}
+
 impl Odd for spherule_kernel::precision::compensated::Quadratic {
     fn odd(s: &mut Source) -> Self {
         spherule_kernel::precision::compensated::Quadratic {
@@ -3778,17 +3922,6 @@ impl Odd for spherule_kernel::precision::compensated::Quadratic {
             k_squared: Odd::odd(s),
             length_scale: Odd::odd(s),
             direction_scale: Odd::odd(s),
-        }
-    }
-}
-
-impl Odd for spherule_kernel::precision::double::Quadratic<f32> {
-    fn odd(s: &mut Source) -> Self {
-        spherule_kernel::precision::double::Quadratic::<f32> {
-            a: Odd::odd(s),
-            b: Odd::odd(s),
-            c: Odd::odd(s),
-            discriminant: Odd::odd(s),
         }
     }
 }

@@ -945,10 +945,25 @@ impl Odd for World {
     }
 }
 
+impl Odd for spherule::kernel::precision::double::Quadratic<f32> {
+    fn odd(s: &mut Source) -> Self {
+        Self {
+            a: Odd::odd(s),
+            b: Odd::odd(s),
+            c: Odd::odd(s),
+            discriminant: Odd::odd(s),
+            oo: Odd::odd(s),
+            rr: Odd::odd(s),
+            c_has_digits: Odd::odd(s),
+        }
+    }
+}
+
 impl Odd for GpuOptions {
     fn odd(s: &mut Source) -> Self {
         Self::default()
             .through_naga(Odd::odd(s))
+            .without_f64(Odd::odd(s))
             .timeout(Odd::odd(s))
     }
 }

@@ -231,6 +231,7 @@ const BY_HAND: &[&str] = &[
     "spherule::bench::measure::Plan",
     "spherule::bench::scenes::BenchScene",
     "spherule::device::buffer::Buffer",
+    "spherule_kernel::precision::double::Quadratic",
     "spherule::device::spirv::Module",
     "spherule::film::Image",
     "spherule::render::gpu::Prepared",

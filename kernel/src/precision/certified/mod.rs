@@ -1,0 +1,138 @@
+//! Certified: right answers everywhere, with more digits only where few cannot decide. Runs on the
+//! GPU and on the CPU.
+//!
+//! Whether a line meets a sphere is decided exactly, and a root is the float that is nearest to the
+//! exact root (ties to even). That float is compared with the ray's interval. So every device finds
+//! the same, bit for bit. Each step is evaluated only where the ones before cannot decide, after J.
+//! R. Shewchuk's adaptive predicates (Discrete Comput. Geom. 18 (1997) 305):
+//!
+//! 1. With 64-bit floats, [`wide`], for hits and misses. Without them, three steps:
+//!    - a [`filter`] in f32, for misses;
+//!    - pairs of floats, as in [`super::compensated`]: the sign of Δ is certain where |Δ| > E₂ =
+//!      2⁻³⁸ (a r² + k·k + |k||o||d|), and a root where its error does not reach to the midpoint
+//!      between two floats ([`rounding`]);
+//!    - the same with c as a sum without loss, where c may be too close to zero.
+//! 2. All coefficients as sums without loss ([`distilled`]). Where that does not round a root for
+//!    certain, the midpoint's place on the line does, by the exact sign of the quadratic there.
+//!
+//! No step sees more than floats can hold: components must be at least 2⁻⁷⁵ of the largest length,
+//! and t must be a normal float.
+
+mod distilled;
+mod filter;
+mod rounding;
+pub mod wide;
+
+use self::rounding::{Root, choose, choose_exactly};
+use super::compensated::{Quadratic, two_to_minus};
+use super::root::Precision;
+use crate::hit::Hit;
+#[cfg(any(not(target_arch = "spirv"), feature = "f64"))]
+use crate::lane::Lane3;
+use crate::ray::Ray;
+use crate::sphere::Sphere;
+
+/// The rung of this module.
+#[derive(Clone, Copy, Debug)]
+pub struct Certified;
+
+/// The relative error of |q| below which c may be all that leaves a root open: 2⁻²⁸.
+const WORTH_A_TRY: f32 = two_to_minus(28);
+
+/// The step that decided.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[repr(u32)]
+pub enum Stage {
+    /// 64-bit floats.
+    Wide = 0,
+    /// The filter.
+    Filter = 1,
+    /// Pairs of floats.
+    Pairs = 2,
+    /// Pairs of floats, with c distilled.
+    DistilledC = 3,
+    /// Distillation of everything.
+    Distilled = 4,
+}
+
+impl Precision for Certified {
+    #[cfg(any(not(target_arch = "spirv"), feature = "f64"))]
+    #[inline]
+    fn intersect(sphere: Sphere, ray: &Ray) -> f32 {
+        intersect_with_stage(sphere, ray).0
+    }
+
+    #[cfg(all(target_arch = "spirv", not(feature = "f64")))]
+    #[inline]
+    fn intersect(sphere: Sphere, ray: &Ray) -> f32 {
+        intersect_in_single(sphere, ray).0
+    }
+}
+
+/// The parameter of the hit or [`Hit::NONE_T`], and the step that decided.
+#[cfg(any(not(target_arch = "spirv"), feature = "f64"))]
+#[inline]
+#[must_use]
+pub fn intersect_with_stage(sphere: Sphere, ray: &Ray) -> (f32, Stage) {
+    let line = wide::WideRay {
+        origin: Lane3::of(ray.origin).widened(),
+        direction: Lane3::of(ray.direction).widened(),
+        t_min: f64::from(ray.t_min),
+        t_max: f64::from(ray.t_max),
+    };
+    let center = Lane3::of(sphere.center()).widened();
+    let answer = line.intersect(center, f64::from(sphere.radius()));
+    if answer.is_certain {
+        return (answer.t as f32, Stage::Wide);
+    }
+    let pairs = Quadratic::of(sphere, ray);
+    (intersect_distilled(&pairs, ray), Stage::Distilled)
+}
+
+/// As [`intersect_with_stage`], in 32-bit floats alone.
+#[inline]
+#[must_use]
+pub fn intersect_in_single(sphere: Sphere, ray: &Ray) -> (f32, Stage) {
+    if filter::misses_for_certain(sphere, ray) {
+        return (Hit::NONE_T, Stage::Filter);
+    }
+    let pairs = Quadratic::of(sphere, ray);
+    if pairs.misses_for_certain() {
+        return (Hit::NONE_T, Stage::Pairs);
+    }
+    if pairs.meets_for_certain() {
+        let size_error = pairs.size_error();
+        let (mut quadratic, mut c_error, mut stage) = (pairs, pairs.c_error(), Stage::Pairs);
+        // With c as it is, and with c distilled: it is uncertain for an origin near the surface or
+        // near that of a very large sphere. A loop, so that there is one copy of the code.
+        let mut tries = 0;
+        while tries < 2 {
+            let (t, is_certain) = choose(&pairs, Root::both(&quadratic, size_error, c_error), ray);
+            if is_certain {
+                return (t, stage);
+            }
+            if size_error > WORTH_A_TRY {
+                break;
+            }
+            quadratic = distilled::with_distilled_c(&pairs);
+            c_error = quadratic.c.high.abs() * distilled::ERROR;
+            stage = Stage::DistilledC;
+            tries += 1;
+        }
+    }
+    (intersect_distilled(&pairs, ray), Stage::Distilled)
+}
+
+/// By sums without loss alone.
+#[inline]
+fn intersect_distilled(pairs: &Quadratic, ray: &Ray) -> f32 {
+    let quadratic = distilled::distilled(pairs);
+    let meets = (quadratic.discriminant.high >= 0.0) & (quadratic.a.high > 0.0);
+    if meets {
+        let c_error = quadratic.c.high.abs() * distilled::ERROR;
+        let roots = Root::both(&quadratic, distilled::ERROR, c_error);
+        choose_exactly(pairs, roots, ray)
+    } else {
+        Hit::NONE_T
+    }
+}
