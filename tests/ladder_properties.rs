@@ -14,9 +14,9 @@ use spherule::kernel::precision::{Precision, Robust, double, intersect};
 use spherule::kernel::{Camera, Hit, Ray, Rung, Sphere};
 use spherule::ulp;
 
-/// A coordinate in the domain: up to 2²⁰, with small numbers as likely as large ones.
+/// A coordinate in the domain: up to 2²³, with small numbers as likely as large ones.
 fn coordinate() -> impl Strategy<Value = f32> {
-    (-1.0_f32..1.0, -20_i32..=20).prop_map(|(m, e)| m * 2.0_f32.powi(e))
+    (-1.0_f32..1.0, -20_i32..=23).prop_map(|(m, e)| m * 2.0_f32.powi(e))
 }
 
 fn vector() -> impl Strategy<Value = Vec3> {

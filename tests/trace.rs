@@ -108,6 +108,67 @@ fn hard_cases_are_hit_in_a_tree_of_a_million() {
     }
 }
 
+/// The same in whatever units lengths and directions are, as long as squares of lengths and
+/// parameters are normal floats.
+#[test]
+fn the_tree_loses_no_hit_in_any_units() {
+    let (scene, reach) = scenes::load("S500", 24, 18).expect("a scene");
+    let tracer = CpuTracer::new(&scene.world.spheres, Acceleration::Auto);
+    let sets = RaySets::of(&scene, &tracer, reach).expect("rays");
+    let rays: Vec<Ray> = Kind::ALL
+        .iter()
+        .flat_map(|kind| sets.kind(*kind))
+        .step_by(5)
+        .copied()
+        .collect();
+    let mut wrong = Vec::new();
+    for length in [-53_i32, -40, -20, 20, 40, 54] {
+        for direction in [-60_i32, -30, 0, 30, 60, 66, 100, 120] {
+            if (length - direction).abs() > 110 {
+                continue;
+            }
+            let (by, along) = (2.0_f32.powi(length), 2.0_f32.powi(direction));
+            let spheres: Vec<Sphere> = scene
+                .world
+                .spheres
+                .iter()
+                .map(|sphere| Sphere::new(sphere.center() * by, sphere.radius() * by))
+                .collect();
+            let of_t = |t: f32| {
+                if t == Hit::NONE_T {
+                    t
+                } else {
+                    (f64::from(t) * 2.0_f64.powi(length - direction)) as f32
+                }
+            };
+            let rays: Vec<Ray> = rays
+                .iter()
+                .map(|ray| {
+                    Ray::within(
+                        ray.origin * by,
+                        ray.direction * along,
+                        of_t(ray.t_min),
+                        of_t(ray.t_max),
+                    )
+                })
+                .collect();
+            let tree = CpuTracer::new(&spheres, Acceleration::Tree);
+            let brute = CpuTracer::new(&spheres, Acceleration::BruteForce);
+            let (mut found, mut truth) = (Vec::new(), Vec::new());
+            for rung in Rung::ALL {
+                tree.nearest(rung, &rays, &mut found);
+                brute.nearest(rung, &rays, &mut truth);
+                let differing = found.iter().zip(&truth).filter(|(a, b)| a != b).count();
+                let hits = truth.iter().filter(|hit| hit.is_some()).count();
+                if differing > 0 {
+                    wrong.push(format!("lengths 2^{length}, directions 2^{direction}, {}: {differing} of {} differ, {hits} hits", rung.name(), rays.len()));
+                }
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
 /// The same on every adapter. On the rungs below compensated, a driver may fuse and reorder
 /// differently in the two kernels; a software adapter does not.
 #[test]

@@ -3,9 +3,10 @@
 //!
 //! With v = 2⁻⁵³: o is off by v·|o| at most, k by a few v·|o||d|, and Δ = a r² − k·k by a few v (a
 //! r² + |k||o||d|). c is off by a few v (o·o + r²), or by v|c| + 2⁻⁷³ (o·o + r²) where it is less
-//! than 2⁻¹⁶ of these ([`residual`]). There Δ is b² − ac, off by a few v (|b||o||d| + a|c|). Each
-//! root is rounded to a float at the end. Vulkan
-//! promises little about 64-bit quotients and roots, so one Newton step follows each.
+//! than 2⁻¹⁶ of these ([`residual`]). There Δ is b² − ac, off by a few v (|b||o||d| + a|c|).
+//!
+//! Each root is rounded to a float at the end. Vulkan promises little about 64-bit quotients and
+//! roots, so one Newton step follows each.
 
 use super::compensated::two_to_minus;
 use super::root::Precision;

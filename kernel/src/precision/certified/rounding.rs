@@ -65,12 +65,14 @@ impl Root {
     fn rounded(self) -> Rounded {
         let DoubleSingle { high, low } = self.value;
         let other = next_towards(high, low);
-        // What is left until the midpoint, exactly.
+        // What is left until the midpoint, exactly. On the other side of `high` it may be half as
+        // far, if that is a power of two.
         let half = 0.5 * sub(other, high).abs();
+        let is_inside = (low.abs() + self.error < half) & (self.error < 0.5 * half);
         Rounded {
             nearest: high,
             other,
-            is_certain: (low.abs() + self.error < half) | ((low == 0.0) & (self.error == 0.0)),
+            is_certain: is_inside | ((low == 0.0) & (self.error == 0.0)),
         }
     }
 
@@ -168,5 +170,27 @@ fn negative(value: DoubleSingle) -> DoubleSingle {
     DoubleSingle {
         high: sub(0.0, value.high),
         low: sub(0.0, value.low),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Below a power of two floats are twice as close to each other.
+    #[test]
+    fn a_power_of_two_is_certain_if_the_midpoint_below_it_is_not_reached() {
+        let root = |low: f32, error: f32| Root {
+            value: DoubleSingle { high: 1.0, low },
+            error,
+        };
+        let ulp = f32::EPSILON;
+        for (low, within) in [(0.0, 0.1), (1e-4 * ulp, 0.2), (-1e-4 * ulp, 0.1)] {
+            assert!(root(low, within * ulp).rounded().is_certain, "{low}");
+            assert!(!root(low, 0.3 * ulp).rounded().is_certain, "{low}");
+        }
+        assert!(root(0.3 * ulp, 0.1 * ulp).rounded().is_certain);
+        assert!(!root(0.3 * ulp, 0.21 * ulp).rounded().is_certain);
+        assert!(!root(-0.2 * ulp, 0.06 * ulp).rounded().is_certain);
     }
 }
