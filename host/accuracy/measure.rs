@@ -82,13 +82,13 @@ impl fmt::Display for Steps {
             ("pairs with c distilled", self.distilled_c),
             ("distillation", self.distilled),
         ];
-        let total: usize = named.iter().map(|(_, count)| count).sum();
+        let total: f64 = named.iter().map(|(_, count)| *count as f64).sum();
         let mut shown = named.iter().filter(|(_, count)| *count > 0).peekable();
         if shown.peek().is_none() {
             return f.write_str("no test");
         }
         while let Some((name, count)) = shown.next() {
-            write!(f, "{name} {:.3} %", 100.0 * *count as f64 / total as f64)?;
+            write!(f, "{name} {:.3} %", 100.0 * *count as f64 / total)?;
             if shown.peek().is_some() {
                 f.write_str(", ")?;
             }
