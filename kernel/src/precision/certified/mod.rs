@@ -7,12 +7,12 @@
 //! R. Shewchuk's adaptive predicates (Discrete Comput. Geom. 18 (1997) 305):
 //!
 //! 1. With 64-bit floats, [`wide`], for hits and misses. Without them, three steps:
-//!    - a [`filter`] in f32, for misses;
+//!    - a filter (`filter.rs`) in f32, for misses;
 //!    - pairs of floats, as in [`super::compensated`]: the sign of Δ is certain where |Δ| > E₂ =
 //!      2⁻³⁸ (a r² + k·k + |k||o||d|), and a root where its error does not reach to the midpoint
-//!      between two floats ([`rounding`]);
+//!      between two floats (`rounding.rs`);
 //!    - the same with c as a sum without loss, where c may be too close to zero.
-//! 2. All coefficients as sums without loss ([`distilled`]). Where that does not round a root for
+//! 2. All coefficients as sums without loss (`distilled.rs`). Where that does not round a root for
 //!    certain, the midpoint's place on the line does, by the exact sign of the quadratic there.
 //!
 //! No step sees more than floats can hold: components must be at least 2⁻⁷⁵ of the largest length,
