@@ -209,7 +209,7 @@ impl Group {
                 let center = vectors(simd, &next.center);
                 RobustLines::of(simd, self).roots(center, Single16::load(simd, &next.radius))
             }
-            Rung::Double => DoubleLines::of(simd, self).roots(simd, next),
+            Rung::Double => self.double_roots(simd, next),
             Rung::Certified => return self.meet_for_certain(simd, query, next),
             _ => return std::array::from_fn(|lane| next.intersect(lane, query, self)),
         };
@@ -228,14 +228,8 @@ impl Group {
     /// open.
     #[inline(always)]
     fn meet_for_certain<S: Simd>(&self, simd: S, query: &Query<'_>, next: &Next) -> Lanes {
-        let wide = |lanes: &Lanes| Double16::widened(Single16::load(simd, lanes));
-        let line = WideRay {
-            origin: widened(simd, &self.origin),
-            direction: widened(simd, &self.direction),
-            t_min: wide(&self.t_min),
-            t_max: wide(&self.end),
-        };
-        let answer = line.intersect(widened(simd, &next.center), wide(&next.radius));
+        let (center, radius) = next.widened(simd);
+        let answer = self.wide_rays(simd).intersect(center, radius);
         let mut found = [0.0; LANES];
         answer.t.rounded().store(&mut found);
         let mut open = (!answer.is_certain).narrowed(simd).to_bitmask();
@@ -245,6 +239,32 @@ impl Group {
             found[lane] = next.intersect(lane, query, self);
         }
         found
+    }
+
+    /// Whether each line meets its sphere, and the roots, the smaller first, on [`Rung::Double`].
+    #[inline(always)]
+    fn double_roots<S: Simd>(
+        &self,
+        simd: S,
+        next: &Next,
+    ) -> (mask32x16<S>, Single16<S>, Single16<S>) {
+        let line = self.wide_rays(simd);
+        let (center, radius) = next.widened(simd);
+        let quadratic = double::Quadratic::of(line.origin, line.direction, center, radius);
+        let roots = quadratic.roots();
+        let meets = quadratic.meets().narrowed(simd);
+        (meets, roots.near.rounded(), roots.far.rounded())
+    }
+
+    /// The rays in 64-bit floats.
+    #[inline(always)]
+    fn wide_rays<S: Simd>(&self, simd: S) -> WideRay<Double16<S>> {
+        WideRay {
+            origin: widened(simd, &self.origin),
+            direction: widened(simd, &self.direction),
+            t_min: Double16::widened(Single16::load(simd, &self.t_min)),
+            t_max: Double16::widened(Single16::load(simd, &self.end)),
+        }
     }
 
     /// For each ray the spheres, a bit each, for which bounds decide nothing, or not which is
@@ -415,6 +435,13 @@ impl Next {
         next
     }
 
+    /// Centres and radii in 64-bit floats.
+    #[inline(always)]
+    fn widened<S: Simd>(&self, simd: S) -> (Lane3<Double16<S>>, Double16<S>) {
+        let radius = Double16::widened(Single16::load(simd, &self.radius));
+        (widened(simd, &self.center), radius)
+    }
+
     /// The parameter of a ray at its sphere; NaN or the end of the ray or more if there is none.
     fn intersect(&self, lane: usize, query: &Query<'_>, group: &Group) -> f32 {
         if self.index[lane] == Hit::NONE_SPHERE {
@@ -462,32 +489,6 @@ impl<S: Simd> RobustLines<S> {
         let quadratic = robust::Quadratic::of(o, radius, d, a, self.inverse);
         let (near, far) = quadratic.roots();
         (quadratic.meets(), near, far)
-    }
-}
-
-struct DoubleLines<S: Simd> {
-    origin: Lane3<Double16<S>>,
-    direction: Lane3<Double16<S>>,
-}
-
-impl<S: Simd> DoubleLines<S> {
-    #[inline(always)]
-    fn of(simd: S, group: &Group) -> Self {
-        Self {
-            origin: widened(simd, &group.origin),
-            direction: widened(simd, &group.direction),
-        }
-    }
-
-    /// Whether each line meets its sphere, and the roots, the smaller first.
-    #[inline(always)]
-    fn roots(&self, simd: S, next: &Next) -> (mask32x16<S>, Single16<S>, Single16<S>) {
-        let center = widened(simd, &next.center);
-        let radius = Double16::widened(Single16::load(simd, &next.radius));
-        let quadratic = double::Quadratic::of(self.origin, self.direction, center, radius);
-        let roots = quadratic.roots();
-        let meets = quadratic.meets().narrowed(simd);
-        (meets, roots.near.rounded(), roots.far.rounded())
     }
 }
 
