@@ -28,7 +28,7 @@
 
 use glam::DVec3;
 use rayon::prelude::*;
-use spherule_kernel::{Effects, Rung, Sphere};
+use spherule_kernel::{Rung, Sphere};
 
 use crate::scene::Scene;
 use crate::scene::world::GRAIN;
@@ -52,15 +52,11 @@ pub struct Choice {
 /// The rungs that are tried before `certified`, the cheapest first. If `robust` is not enough, most
 /// rays need more digits, and then `double` was cheaper than `certified` on every device that was
 /// measured. `compensated` is never the cheapest.
-///
-/// With caustics `robust` is not tried: on an NVIDIA H200 (driver 580.159) some light paths then
-/// never ended, for a reason that is not known. On `double` all did.
-fn cheap_rungs(scene: &Scene, has_f64: bool) -> &'static [Rung] {
-    match (scene.effects().any(Effects::CAUSTICS), has_f64) {
-        (false, true) => &[Rung::Robust, Rung::Double],
-        (false, false) => &[Rung::Robust],
-        (true, true) => &[Rung::Double],
-        (true, false) => &[],
+fn cheap_rungs(has_f64: bool) -> &'static [Rung] {
+    if has_f64 {
+        &[Rung::Robust, Rung::Double]
+    } else {
+        &[Rung::Robust]
     }
 }
 
@@ -69,7 +65,7 @@ fn cheap_rungs(scene: &Scene, has_f64: bool) -> &'static [Rung] {
 #[must_use]
 pub fn choose(scene: &Scene, tolerance: f64, has_f64: bool) -> Choice {
     let mut cheaper = None;
-    for rung in cheap_rungs(scene, has_f64) {
+    for rung in cheap_rungs(has_f64) {
         let bound = bound(scene, *rung);
         if bound <= tolerance {
             return Choice {
@@ -317,16 +313,6 @@ mod tests {
         passing.world.velocities = vec![Vec3::new(2e5, 0.0, 0.0)];
         passing.lens.shutter = (0.0, 1.0);
         assert_eq!(choose(&passing, DEFAULT_TOLERANCE, true).rung, Rung::Double);
-    }
-
-    #[test]
-    fn caustics_get_more_than_robust() {
-        let mut caustic = Scene::load("scenes/caustic.toml").expect("a scene");
-        let chosen = |scene: &Scene, has_f64| choose(scene, DEFAULT_TOLERANCE, has_f64).rung;
-        assert_eq!(chosen(&caustic, true), Rung::Double);
-        assert_eq!(chosen(&caustic, false), Rung::Certified);
-        caustic.sampling.caustics = false;
-        assert_eq!(chosen(&caustic, true), Rung::Robust);
     }
 
     /// If pixels are smaller than the rounding errors of a ray, no rung is within the tolerance,

@@ -3,13 +3,12 @@
 use serde::Serialize;
 use spherule_kernel::{Effects, Pixel, Rung, Shading};
 
-use crate::device::Device;
+use crate::device::{Device, busy};
 use crate::error::Result;
 use crate::film::compare::{Comparison, Tolerance};
 use crate::film::flip::mean_flip;
 use crate::memory;
-use crate::render::EffectChoice;
-use crate::render::{Progress, QUIET, Settings, render};
+use crate::render::{self, EffectChoice, Progress, QUIET, Settings, render, whole_image};
 use crate::scene::Scene;
 
 /// How often each rung renders the frame; the rungs take turns.
@@ -20,7 +19,8 @@ const ROUNDS: usize = 7;
 pub struct Frame {
     /// The rung.
     pub rung: &'static str,
-    /// The median time of tracing, in milliseconds; on the device if it can measure it.
+    /// The median time of tracing, in milliseconds; on a GPU by its own clock, if it has one, while
+    /// it is kept busy.
     pub milliseconds: f64,
     /// The fastest run, in milliseconds.
     pub fastest: f64,
@@ -39,7 +39,7 @@ pub struct Frame {
 ///
 /// # Errors
 ///
-/// As [`render`].
+/// As [`render()`].
 pub fn measure(
     device: &Device,
     rungs: &[Rung],
@@ -61,18 +61,31 @@ pub fn measure(
         &format!("keeping an image of each precision of {pixels} pixels"),
     )?;
     let reference = render(scene, settings(Rung::Certified), &Device::Cpu, QUIET)?.image;
-    let mut times = vec![Vec::new(); rungs.len()];
     let mut images = Vec::new();
-    for round in 0..=ROUNDS {
+    let mut worlds = Vec::new();
+    for rung in rungs {
+        images.push(render(scene, settings(*rung), device, QUIET)?.image);
+        if let Device::Gpu(gpu) = device {
+            let world = render::gpu::Prepared::new(gpu, &scene.world, settings(*rung))?;
+            busy::keep_busy(gpu, busy::WARM_UP / rungs.len() as u32)?;
+            worlds.push(world);
+        }
+    }
+    let launch = whole_image(scene)?;
+    let mut times = vec![Vec::new(); rungs.len()];
+    for round in 0..ROUNDS {
         for (index, rung) in rungs.iter().enumerate() {
-            let rendered = render(scene, settings(*rung), device, QUIET)?;
-            // The first round warms up.
-            if round == 0 {
-                images.push(rendered.image);
-            } else {
-                times[index].push(rendered.timings.trace.as_secs_f64() * 1e3);
-            }
-            let done = round * rungs.len() + index + 1;
+            let trace = match device {
+                Device::Cpu => render(scene, settings(*rung), device, QUIET)?.timings.trace,
+                Device::Gpu(gpu) => {
+                    busy::keep_busy(gpu, busy::BETWEEN)?;
+                    // The caches then hold the scene, as they do if one image follows another.
+                    render::gpu::time(gpu, &launch, &worlds[index])?;
+                    render::gpu::time(gpu, &launch, &worlds[index])?
+                }
+            };
+            times[index].push(trace.as_secs_f64() * 1e3);
+            let done = (1 + round) * rungs.len() + index + 1;
             let _ = progress(done as f64 / ((1 + ROUNDS) * rungs.len()) as f64);
         }
     }

@@ -51,6 +51,8 @@ pub struct RungErrors {
 pub struct Steps {
     /// 64-bit floats.
     pub wide: usize,
+    /// The midpoint between two floats, in pairs of 64-bit floats.
+    pub midpoint: usize,
     /// The filter.
     pub filter: usize,
     /// Pairs of floats.
@@ -65,6 +67,7 @@ impl Steps {
     fn count(&mut self, stage: Stage) {
         *match stage {
             Stage::Wide => &mut self.wide,
+            Stage::Midpoint => &mut self.midpoint,
             Stage::Filter => &mut self.filter,
             Stage::Pairs => &mut self.pairs,
             Stage::DistilledC => &mut self.distilled_c,
@@ -77,6 +80,7 @@ impl fmt::Display for Steps {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let named = [
             ("64-bit floats", self.wide),
+            ("pairs of these", self.midpoint),
             ("the filter", self.filter),
             ("pairs", self.pairs),
             ("pairs with c distilled", self.distilled_c),

@@ -20,13 +20,11 @@ use spherule_kernel::{Hit, Pixel, Ray};
 
 use super::rays::Kind;
 use crate::cpu::InstructionSet;
-use crate::device::{Access, Device, Gpu};
+use crate::device::{Access, Device, Gpu, busy};
 use crate::error::Result;
 use crate::kernel_module;
 use crate::lanes::{LANES, Single16};
 
-/// How long a GPU is kept busy before anything is timed.
-pub(super) const WARM_UP: Duration = Duration::from_secs(2);
 /// Operations of a test. Box: six multiply-adds, six comparisons for the largest and the smallest,
 /// one of these two. Sphere, by its discriminant: three differences, three products for each of o·d
 /// and o·o, one for c, two for the discriminant, one comparison.
@@ -155,11 +153,7 @@ fn multiply_on_gpu(gpu: &Gpu) -> Result<f64> {
             rounds *= 2;
             continue;
         }
-        // A GPU that was idle is slow at first.
-        let started = Instant::now();
-        while !gpu.is_software() && started.elapsed() < WARM_UP {
-            gpu.launch(&kernel, &bindings, groups)?;
-        }
+        busy::keep_busy(gpu, busy::WARM_UP)?;
         let done = f64::from(threads) * f64::from(rounds) * f64::from(MULTIPLICATIONS);
         return fastest(|| {
             let took = gpu.launch(&kernel, &bindings, groups)?.best();

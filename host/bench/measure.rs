@@ -5,10 +5,10 @@ use std::time::{Duration, Instant};
 use serde::Serialize;
 use spherule_kernel::{Hit, Pixel, Rung, Shading};
 
-use super::limit::{Limit, WARM_UP};
+use super::limit::Limit;
 use super::rays::{Kind, RaySets};
 use crate::accel::{self, Acceleration};
-use crate::device::Device;
+use crate::device::{Device, busy};
 use crate::error::Result;
 use crate::film;
 use crate::render::{self, QUIET, Settings, whole_image};
@@ -265,12 +265,7 @@ fn on_gpu(
     ];
     let mut times = Kind::ALL.map(|_| Vec::new());
     let mut found = [0; Kind::ALL.len()];
-    if !gpu.is_software() && !sets.ambient.is_empty() {
-        let started = Instant::now();
-        while started.elapsed() < WARM_UP {
-            tracer.heat(&batches[Kind::Ambient as usize - 1])?;
-        }
-    }
+    busy::keep_busy(gpu, busy::WARM_UP)?;
     let launch_once = |kind: Kind| match kind {
         Kind::Primary => render::gpu::time(gpu, &launch, &world),
         Kind::Shadow | Kind::Ambient => tracer.occluded(plan.rung, &batches[kind as usize - 1]),
@@ -281,7 +276,7 @@ fn on_gpu(
             if sets.kind(kind).is_empty() {
                 continue;
             }
-            tracer.heat(&batches[Kind::Ambient as usize - 1])?;
+            busy::keep_busy(gpu, busy::BETWEEN)?;
             // The caches then hold the scene, as they do if one image follows another.
             launch_once(kind)?;
             times[kind as usize].push(launch_once(kind)?.as_secs_f64());

@@ -144,6 +144,11 @@ pub(super) struct CheckArguments {
     #[arg(long, value_name = "auto|gpu|cpu|NAME", default_value = "auto")]
     pub(super) device: DeviceChoice,
 
+    /// Only measure what the device's driver does to arithmetic, and print a row for the table of
+    /// known devices in docs/numerics.md
+    #[arg(long)]
+    pub(super) arithmetic: bool,
+
     /// Print JSON
     #[arg(long)]
     pub(super) json: bool,

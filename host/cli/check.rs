@@ -7,21 +7,18 @@ use serde::Serialize;
 use spherule_kernel::Rung;
 
 use super::args::CheckArguments;
+use super::arithmetic::Arithmetic;
 use super::write_json;
 use crate::accuracy::cases::{Verdict, catalogue};
 use crate::accuracy::scene_cases::SCENE_CASES;
 use crate::device::Device;
-use crate::device::canary::{Canary, Share};
 use crate::error::Result;
-use crate::ulp;
 use crate::write::Output;
 
 #[derive(Debug, Serialize)]
 struct CheckReport {
-    device: String,
-    why: String,
-    canary: Canary,
-    refused: Vec<(&'static str, String)>,
+    #[serde(flatten)]
+    arithmetic: Arithmetic,
     cases: Vec<CaseReport>,
     promises_kept: bool,
 }
@@ -37,7 +34,21 @@ struct CaseReport {
 pub(super) fn run(arguments: &CheckArguments) -> Result<ExitCode> {
     let stdout = Output::stdout()?;
     let (device, why) = Device::open(&arguments.device)?;
-    let report = report(&device, why)?;
+    let arithmetic = Arithmetic::of(&device, why)?;
+    if arguments.arithmetic {
+        if arguments.json {
+            write_json(&stdout, &arithmetic)?;
+        } else {
+            let text = format!(
+                "{}\nFor the table in docs/numerics.md, What drivers do:\n{}\n",
+                arithmetic.table(),
+                arithmetic.row()
+            );
+            stdout.write(text.as_bytes())?;
+        }
+        return Ok(ExitCode::SUCCESS);
+    }
+    let report = report(&device, arithmetic)?;
     if arguments.json {
         write_json(&stdout, &report)?;
     } else {
@@ -50,9 +61,8 @@ pub(super) fn run(arguments: &CheckArguments) -> Result<ExitCode> {
     })
 }
 
-fn report(device: &Device, why: String) -> Result<CheckReport> {
-    let canary = Canary::on(device)?;
-    let objections = Rung::ALL.map(|rung| (rung, canary.objection(rung)));
+fn report(device: &Device, arithmetic: Arithmetic) -> Result<CheckReport> {
+    let objections = Rung::ALL.map(|rung| (rung, arithmetic.canary.objection(rung)));
     let mut cases = Vec::new();
     let mut promises_kept = true;
     let mut judge = |number, name, verdict: &dyn Fn(Rung) -> Result<Verdict>| -> Result<()> {
@@ -79,55 +89,14 @@ fn report(device: &Device, why: String) -> Result<CheckReport> {
     }
     cases.sort_by_key(|case| case.number);
     Ok(CheckReport {
-        device: device.name(),
-        why,
-        canary,
-        refused: objections
-            .into_iter()
-            .filter_map(|(rung, objection)| objection.map(|why| (rung.name(), why)))
-            .collect(),
+        arithmetic,
         cases,
         promises_kept,
     })
 }
 
 fn table(report: &CheckReport) -> String {
-    let mut text = String::new();
-    let share = |share: Share| format!("{:>6} of {}", share.exact, share.tried);
-    let canary = &report.canary;
-    // Writing to a String cannot fail.
-    let _ = writeln!(text, "{} ({})\n", report.device, report.why);
-    let _ = writeln!(text, "Its arithmetic");
-    let rows = [
-        ("sums with an exact error term", share(canary.sums)),
-        ("products with an exact error term", share(canary.products)),
-        ("splits into exact halves", share(canary.splits)),
-        (
-            "quotients rounded correctly",
-            format!(
-                "{}, worst {}",
-                share(canary.quotients),
-                ulps(canary.quotient_ulps)
-            ),
-        ),
-        (
-            "square roots rounded correctly",
-            format!("{}, worst {}", share(canary.roots), ulps(canary.root_ulps)),
-        ),
-        (
-            "64-bit results correct",
-            canary.wide.map_or("no 64-bit floats".into(), share),
-        ),
-        ("NaN differs from itself", yes_no(canary.finds_nan).into()),
-        ("keeps subnormals", yes_no(canary.keeps_subnormals).into()),
-    ];
-    for (what, result) in rows {
-        let _ = writeln!(text, "  {what:34} {result}");
-    }
-    for (rung, why) in &report.refused {
-        let _ = writeln!(text, "  {rung} is refused here: {why}");
-    }
-
+    let mut text = report.arithmetic.table();
     let _ = writeln!(
         text,
         "\nThe hard cases: ✓ correct, · wrong but not promised, ✗ broken promise\n"
@@ -167,18 +136,4 @@ fn table(report: &CheckReport) -> String {
         let _ = writeln!(text, "Broken promises:\n  {}", broken.join("\n  "));
     }
     text
-}
-
-/// An error in units in the last place, or in words if no digit is right.
-fn ulps(distance: u32) -> String {
-    let shown = ulp::shown(Some(distance));
-    if shown == distance.to_string() {
-        shown + " ulp"
-    } else {
-        shown + " right"
-    }
-}
-
-fn yes_no(yes: bool) -> &'static str {
-    if yes { "yes" } else { "no" }
 }

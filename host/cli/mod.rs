@@ -4,6 +4,7 @@
 
 mod accuracy;
 mod args;
+mod arithmetic;
 mod bench;
 mod check;
 mod devices;

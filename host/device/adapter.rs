@@ -49,9 +49,7 @@ impl AdapterReport {
                 wgpu::DeviceType::Other => "other",
             },
             api: info.backend.to_string().to_lowercase(),
-            driver: format!("{} {}", info.driver, info.driver_info)
-                .trim()
-                .into(),
+            driver: driver(&info),
             passthrough: takes_spirv(adapter),
             f64: features.contains(wgpu::Features::SHADER_F64),
             timestamps: features.contains(wgpu::Features::TIMESTAMP_QUERY),
@@ -62,6 +60,13 @@ impl AdapterReport {
             name: shown(&info.name).into_owned(),
         }
     }
+}
+
+/// The name and version of the adapter's driver.
+pub(super) fn driver(info: &wgpu::AdapterInfo) -> String {
+    format!("{} {}", info.driver, info.driver_info)
+        .trim()
+        .into()
 }
 
 /// Whether the adapter's driver takes SPIR-V unchanged.

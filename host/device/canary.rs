@@ -61,6 +61,8 @@ pub struct Canary {
     pub wide: Option<Share>,
     /// Sums in 64 bits whose error term is exact; `None` without 64-bit floats.
     pub wide_sums: Option<Share>,
+    /// Products in 64 bits whose error term is exact; `None` without 64-bit floats.
+    pub wide_products: Option<Share>,
 }
 
 impl Canary {
@@ -150,6 +152,7 @@ impl Canary {
             keeps_subnormals: true,
             wide: None,
             wide_sums: None,
+            wide_products: None,
         };
         let count = |share: &mut Share, right: bool| {
             share.exact += usize::from(right);
@@ -191,7 +194,7 @@ impl Canary {
             }
         }
         if let Some(wide) = wide {
-            let (mut share, mut sums) = (Share::default(), Share::default());
+            let [mut share, mut sums, mut products] = [Share::default(); 3];
             for (operands, outcome) in operands.iter().zip(wide) {
                 if operands.a.is_nan() {
                     continue;
@@ -208,9 +211,11 @@ impl Canary {
                         && near(outcome.root, expected.root),
                 );
                 count(&mut sums, outcome.large_sum == expected.large_sum);
+                count(&mut products, outcome.large_square == expected.large_square);
             }
             canary.wide = Some(share);
             canary.wide_sums = Some(sums);
+            canary.wide_products = Some(products);
         }
         canary
     }
@@ -252,11 +257,15 @@ impl Canary {
             Needs::Nothing => None,
             Needs::ErrorTerms => of_error_terms(),
             Needs::ErrorTermsAtLeast => {
-                let of_wide_sums =
-                    |share: Share| (!share.is_whole()).then(|| broken("sums in 64 bits", share));
+                let of_terms = |what, share: Option<Share>| {
+                    share
+                        .filter(|share| !share.is_whole())
+                        .map(|share| broken(what, share))
+                };
                 of_error_terms()
                     .or_else(|| self.wide.and_then(of_wide))
-                    .or_else(|| self.wide_sums.and_then(of_wide_sums))
+                    .or_else(|| of_terms("sums in 64 bits", self.wide_sums))
+                    .or_else(|| of_terms("products in 64 bits", self.wide_products))
             }
             Needs::DoubleFloats => match self.wide {
                 None => Some("the device has no 64-bit floats".into()),
@@ -369,5 +378,25 @@ mod tests {
         assert!(!with(|outcome| outcome.equals_itself = 1).finds_nan);
         assert!(!with(|outcome| outcome.small_product = 0).keeps_subnormals);
         assert!(with(|_| ()).objection(Rung::Double).is_some());
+
+        let wide: Vec<WideOutcome> = operands.iter().map(|o| sing_wide(*o)).collect();
+        let with_wide = |change: fn(&mut WideOutcome)| {
+            let mut bad = wide.clone();
+            bad.iter_mut().for_each(change);
+            Canary::judge(&operands, &good, Some(&bad)).objection(Rung::Certified)
+        };
+        assert_eq!(with_wide(|_| ()), None);
+        for (objection, what) in [
+            (
+                with_wide(|outcome| outcome.large_sum[1] = 0.0),
+                "sums in 64",
+            ),
+            (
+                with_wide(|outcome| outcome.large_square[1] = 0.0),
+                "products in 64",
+            ),
+        ] {
+            assert!(objection.is_some_and(|why| why.contains(what)), "{what}");
+        }
     }
 }

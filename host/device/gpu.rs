@@ -102,6 +102,7 @@ pub struct Gpu {
     device: wgpu::Device,
     queue: wgpu::Queue,
     name: String,
+    driver: String,
     is_software: bool,
     passthrough: bool,
     timeout: Duration,
@@ -112,8 +113,8 @@ pub struct Gpu {
     kernels: Mutex<HashMap<KernelKey, Kernel>>,
     /// The mark of everything that this device makes.
     owner: Owner,
-    /// Whether 64-bit floats save time, once it is known.
-    f64_pays: OnceLock<bool>,
+    /// The rate of 64-bit floats, once it is known.
+    f64_rate: OnceLock<f64>,
 }
 
 /// What a compiled kernel depends on: a digest of the module's specialised words, whether they are
@@ -179,6 +180,7 @@ impl Gpu {
             device,
             queue,
             name,
+            driver: adapter::driver(&info),
             is_software,
             passthrough,
             timeout: options.timeout,
@@ -186,7 +188,7 @@ impl Gpu {
             watch,
             kernels: Mutex::default(),
             owner: Owner::new(),
-            f64_pays: OnceLock::new(),
+            f64_rate: OnceLock::new(),
         })
     }
 
@@ -194,6 +196,12 @@ impl Gpu {
     #[must_use]
     pub fn name(&self) -> &str {
         &self.name
+    }
+
+    /// The driver's name and version.
+    #[must_use]
+    pub fn driver(&self) -> &str {
+        &self.driver
     }
 
     /// Whether the adapter is software that runs on the CPU.
@@ -214,14 +222,11 @@ impl Gpu {
         self.device.features().contains(wgpu::Features::SHADER_F64)
     }
 
-    /// Whether 64-bit floats save time, as `measure` says the first time.
-    pub(super) fn remember_whether_f64_pays(
-        &self,
-        measure: impl FnOnce() -> Result<bool>,
-    ) -> Result<bool> {
-        match self.f64_pays.get() {
-            Some(pays) => Ok(*pays),
-            None => measure().map(|pays| *self.f64_pays.get_or_init(|| pays)),
+    /// The rate of 64-bit floats, as `measure` finds it the first time.
+    pub(super) fn remember_f64_rate(&self, measure: impl FnOnce() -> Result<f64>) -> Result<f64> {
+        match self.f64_rate.get() {
+            Some(rate) => Ok(*rate),
+            None => measure().map(|rate| *self.f64_rate.get_or_init(|| rate)),
         }
     }
 

@@ -8,6 +8,7 @@
 //! | `mapping`, `timer` | mapping device memory for the host; the time of a launch |
 //! | [`spirv`] | [`Module`]: SPIR-V, checked and specialised |
 //! | [`buffer`] | [`Buffer`]: device memory |
+//! | [`busy`] | keeps a GPU's clock up before something is timed |
 //! | [`canary`] | measures the arithmetic that the upper rungs need |
 //! | [`rung`] | the module that runs a rung on a GPU, with 64-bit floats where they pay |
 //!
@@ -18,6 +19,8 @@
 pub mod adapter;
 #[cfg(feature = "gpu")]
 pub mod buffer;
+#[cfg(feature = "gpu")]
+pub mod busy;
 #[cfg(feature = "gpu")]
 pub mod canary;
 mod choice;

@@ -37,18 +37,30 @@ pub fn module(gpu: &Gpu, rung: Rung) -> Result<Module> {
 pub fn uses_f64(gpu: &Gpu, rung: Rung) -> Result<bool> {
     match rung.needs() {
         Needs::Nothing | Needs::ErrorTerms => Ok(false),
-        Needs::ErrorTermsAtLeast => gpu.remember_whether_f64_pays(|| f64_pays(gpu)),
+        // Software has them at half the rate.
+        Needs::ErrorTermsAtLeast => {
+            Ok(gpu.has_f64()
+                && (gpu.is_software() || f64_rate(gpu)?.is_some_and(|rate| rate >= PAYS)))
+        }
         Needs::DoubleFloats => Ok(true),
     }
 }
 
-fn f64_pays(gpu: &Gpu) -> Result<bool> {
-    // Software has them at half the rate.
-    Ok(gpu.has_f64() && (gpu.is_software() || f64_rate(gpu)? >= PAYS))
+/// How many 64-bit floats the GPU multiplies in the time of one of 32 bits; `None` if it has none.
+/// It is measured once.
+///
+/// # Errors
+///
+/// The device's errors.
+pub fn f64_rate(gpu: &Gpu) -> Result<Option<f64>> {
+    if gpu.has_f64() {
+        gpu.remember_f64_rate(|| measure_f64_rate(gpu)).map(Some)
+    } else {
+        Ok(None)
+    }
 }
 
-/// How many 64-bit floats the GPU multiplies in the time of one of 32 bits.
-fn f64_rate(gpu: &Gpu) -> Result<f64> {
+fn measure_f64_rate(gpu: &Gpu) -> Result<f64> {
     const THREADS: u32 = 1 << 18;
     const ROUNDS: u32 = 64;
     let access = [Access::Read, Access::ReadWrite];

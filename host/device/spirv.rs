@@ -5,6 +5,8 @@
 //! the host relies on (entry points, workgroup sizes, specialisation constants).
 
 mod fold;
+mod loops;
+mod written;
 
 use std::collections::{HashMap, HashSet};
 use std::fmt;

@@ -97,36 +97,6 @@ impl<'a> GpuTracer<'a> {
         self.launch(rung, names, batch, batch.occluded.binding())
     }
 
-    /// Keeps the device busy for a few hundredths of a second without a pause: a device that often
-    /// waits for the host runs at a fraction of its clock. Does nothing on a software adapter.
-    /// Overwrites the hits.
-    ///
-    /// # Errors
-    ///
-    /// The device's errors.
-    pub fn heat(&self, batch: &Batch) -> Result<()> {
-        const TESTS: u64 = 1 << 34;
-        if self.gpu.is_software() {
-            return Ok(());
-        }
-        let access = [Access::Read, Access::Read, Access::ReadWrite];
-        let module = rung::module(self.gpu, Rung::Robust)?;
-        let kernel = self.gpu.kernel(&module, "trace_rays", &access)?;
-        let bindings = [
-            batch.rays.binding(),
-            self.spheres.binding(),
-            batch.hits.binding(),
-        ];
-        let spheres = self.spheres.len().max(1) as u64;
-        let rays = (batch.rays.len() as u64).min(1 << 21);
-        let threads = (TESTS / spheres).clamp(1, rays.max(1));
-        let groups = kernel.workgroups_for([threads as u32, 1, 1]);
-        for _ in 0..(TESTS / (spheres * threads)).clamp(1, 64) {
-            self.gpu.launch(&kernel, &bindings, groups)?;
-        }
-        Ok(())
-    }
-
     /// The hits that [`GpuTracer::nearest`] found, with the spheres' indices in the input.
     ///
     /// # Errors

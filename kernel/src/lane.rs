@@ -11,9 +11,9 @@ use core::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
 use glam::Vec3;
 
-use crate::arithmetic::strict::{add, sub};
+use crate::arithmetic::strict::{add, mul, sub};
 #[cfg(any(not(target_arch = "spirv"), feature = "f64"))]
-use crate::arithmetic::strict::{add_wide, sub_wide};
+use crate::arithmetic::strict::{add_wide, mul_wide, sub_wide};
 
 /// A number, or several side by side.
 pub trait Lane:
@@ -87,8 +87,28 @@ pub trait Lane:
     }
 }
 
+/// A single number, of which [`DoubleWord`](crate::arithmetic::DoubleWord)s are made.
+pub trait Word: Lane<Mask = bool> {
+    /// 2ˢ + 1, where s is half of the bits of a significand, rounded up: what T. J. Dekker splits
+    /// numbers by.
+    const SPLITTER: Self;
+
+    /// The product, as [`Lane::add_strict`].
+    #[must_use]
+    fn mul_strict(self, other: Self) -> Self;
+}
+
 macro_rules! scalar {
-    ($float:ty, $add:ident, $sub:ident) => {
+    ($float:ty, $add:ident, $sub:ident, $mul:ident, $splitter:literal) => {
+        impl Word for $float {
+            const SPLITTER: Self = $splitter;
+
+            #[inline(always)]
+            fn mul_strict(self, other: Self) -> Self {
+                $mul(self, other)
+            }
+        }
+
         impl Lane for $float {
             type Mask = bool;
 
@@ -167,9 +187,9 @@ macro_rules! scalar {
     };
 }
 
-scalar!(f32, add, sub);
+scalar!(f32, add, sub, mul, 4097.0);
 #[cfg(any(not(target_arch = "spirv"), feature = "f64"))]
-scalar!(f64, add_wide, sub_wide);
+scalar!(f64, add_wide, sub_wide, mul_wide, 134_217_729.0);
 
 /// Three coordinates in lanes.
 #[derive(Clone, Copy, Debug)]

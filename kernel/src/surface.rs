@@ -6,7 +6,7 @@ use glam::Vec3;
 use spirv_std::num_traits::Float as _;
 
 #[cfg(all(target_arch = "spirv", not(feature = "f64")))]
-use crate::arithmetic::double_single::DoubleSingle;
+use crate::arithmetic::DoubleSingle;
 use crate::ray::Ray;
 use crate::sphere::Sphere;
 

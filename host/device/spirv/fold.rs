@@ -9,10 +9,12 @@
 //! (M. N. Wegman and F. K. Zadeck, Constant propagation with conditional branches, ACM Trans. Prog.
 //! Lang. Syst. 13 (1991)), for booleans and 32-bit integers. Control flow stays structured as
 //! Vulkan demands: a branch that heads a selection keeps its merge block, and becomes one on
-//! `true`.
+//! `true`. What is left of loops is [straightened](straighten).
 
 use std::collections::{HashMap, HashSet};
 
+use super::loops::straighten;
+use super::written::{Written, is_pure, result_of};
 use super::{HEADER_WORDS, Instructions, op};
 
 /// A module with its specialisation constants fixed to their values, without the code that these
@@ -82,55 +84,6 @@ impl Instruction<'_> {
             opcode: self.opcode,
             operands: self.operands.to_vec(),
         }
-    }
-}
-
-/// An instruction of the folded module.
-struct Written {
-    opcode: u32,
-    operands: Vec<u32>,
-}
-
-impl Written {
-    fn new(opcode: u32, operands: &[u32]) -> Self {
-        Self {
-            opcode,
-            operands: operands.to_vec(),
-        }
-    }
-
-    fn result(&self) -> Option<u32> {
-        result_of(self.opcode, &self.operands)
-    }
-}
-
-/// The id that an instruction defines, if it is known to define one.
-fn result_of(opcode: u32, operands: &[u32]) -> Option<u32> {
-    match opcode {
-        op::LABEL => operands.first().copied(),
-        op::FUNCTION | op::FUNCTION_PARAMETER | op::FUNCTION_CALL | op::EXT_INST => {
-            operands.get(1).copied()
-        }
-        _ if is_pure(opcode, operands) => operands.get(1).copied(),
-        _ => None,
-    }
-}
-
-/// Whether an instruction does nothing but define its result.
-fn is_pure(opcode: u32, operands: &[u32]) -> bool {
-    match opcode {
-        // modf and frexp of GLSL.std.450 store through a pointer.
-        op::EXT_INST => !matches!(operands.get(3), Some(35 | 51)),
-        op::UNDEF
-        | op::VARIABLE
-        | op::LOAD
-        | op::ACCESS_CHAIN
-        | op::IN_BOUNDS_ACCESS_CHAIN
-        | op::ARRAY_LENGTH
-        | op::PHI => true,
-        // Composites, conversions, arithmetic, logic, comparisons, bits.
-        77..=83 | 109..=115 | 124 | 126..=152 | 154..=191 | 194..=205 => true,
-        _ => false,
     }
 }
 
@@ -313,7 +266,7 @@ impl Module {
         let mut written: Vec<Written> = head.iter().map(|it| it.to_written()).collect();
         written.extend(self.write(&blocks, &flow));
         written.extend(end.map(|it| it.to_written()));
-        without_unused(written)
+        straighten(without_unused(written))
     }
 
     /// Follows values along all branches that can be taken.

@@ -63,3 +63,8 @@ strict!(
     /// The difference in 64 bits, rounded to nearest.
     sub_wide, f64, "64", "OpFSub", -
 );
+#[cfg(any(not(target_arch = "spirv"), feature = "f64"))]
+strict!(
+    /// The product in 64 bits, rounded to nearest.
+    mul_wide, f64, "64", "OpFMul", *
+);

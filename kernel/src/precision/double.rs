@@ -12,6 +12,7 @@ use super::compensated::two_to_minus;
 use super::root::Precision;
 #[cfg(any(not(target_arch = "spirv"), feature = "f64"))]
 use super::root::choose_root;
+use crate::arithmetic::error_free::two_sum;
 use crate::hit::Hit;
 use crate::lane::{Lane, Lane3};
 use crate::ray::Ray;
@@ -170,19 +171,6 @@ fn square<L: Lane>(a: L, b: L) -> (L, L) {
     let high = difference.to_single();
     let low = difference.sub_strict(high) + error;
     (high * high, low * (high + high + low))
-}
-
-/// `a + b` as its rounded value and the rounding error, in lanes.
-#[inline(always)]
-#[must_use]
-pub fn two_sum<L: Lane>(a: L, b: L) -> (L, L) {
-    let sum = a.add_strict(b);
-    let b_in_sum = sum.sub_strict(a);
-    let a_in_sum = sum.sub_strict(b_in_sum);
-    (
-        sum,
-        a.sub_strict(a_in_sum).add_strict(b.sub_strict(b_in_sum)),
-    )
 }
 
 /// √x for x ≥ 0 from about √x and about 1/√x, by one Newton step; 0 for any other x.

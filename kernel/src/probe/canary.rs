@@ -71,6 +71,8 @@ pub struct WideOutcome {
     pub sum: f64,
     /// 2⁴⁵ · a + b as its rounded value and the rounding error.
     pub large_sum: [f64; 2],
+    /// The square of that sum, rounded, and its rounding error.
+    pub large_square: [f64; 2],
     /// a · b, which 64 bits hold exactly.
     pub product: f64,
     /// a / b.
@@ -87,10 +89,12 @@ pub fn sing_wide(operands: Operands) -> WideOutcome {
     let (a, b) = (f64::from(operands.a), f64::from(operands.b));
     let root = a.abs().sqrt();
     // 2⁴⁵
-    let (large_sum, rest) = double::two_sum(a * f64::from(f32::from_bits((127 + 45) << 23)), b);
+    let (large_sum, rest) = two_sum(a * f64::from(f32::from_bits((127 + 45) << 23)), b);
+    let (square, error) = two_product(large_sum, large_sum);
     WideOutcome {
         sum: a * 1_073_741_824.0 + b,
         large_sum: [large_sum, rest],
+        large_square: [square, error],
         product: a * b,
         quotient: double::quotient(a, b, 1.0 / b),
         root: double::square_root(a.abs(), root, 1.0 / root),

@@ -151,6 +151,7 @@ layouts! {
     "size of WideOutcome" = size_of::<WideOutcome>();
     "WideOutcome.sum" = offset_of!(WideOutcome, sum);
     "WideOutcome.large_sum" = offset_of!(WideOutcome, large_sum);
+    "WideOutcome.large_square" = offset_of!(WideOutcome, large_square);
     "WideOutcome.product" = offset_of!(WideOutcome, product);
     "WideOutcome.quotient" = offset_of!(WideOutcome, quotient);
     "WideOutcome.root" = offset_of!(WideOutcome, root);

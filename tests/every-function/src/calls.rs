@@ -75,6 +75,12 @@ pub const CALLS: &[Call] = &[
     Call::new("f32 as spherule_kernel::lane::Lane::to_single", |s| {
         seen(<f32 as spherule_kernel::lane::Lane>::to_single(s.draw()))
     }),
+    Call::new("f32 as spherule_kernel::lane::Word::mul_strict", |s| {
+        seen(<f32 as spherule_kernel::lane::Word>::mul_strict(
+            s.draw(),
+            s.draw(),
+        ))
+    }),
     Call::new("f64 as spherule_kernel::lane::Lane::abs", |s| {
         seen(<f64 as spherule_kernel::lane::Lane>::abs(s.draw()))
     }),
@@ -128,6 +134,12 @@ pub const CALLS: &[Call] = &[
     }),
     Call::new("f64 as spherule_kernel::lane::Lane::to_single", |s| {
         seen(<f64 as spherule_kernel::lane::Lane>::to_single(s.draw()))
+    }),
+    Call::new("f64 as spherule_kernel::lane::Word::mul_strict", |s| {
+        seen(<f64 as spherule_kernel::lane::Word>::mul_strict(
+            s.draw(),
+            s.draw(),
+        ))
     }),
     Call::new("spherule::accel::build::build", |s| {
         seen(spherule::accel::build::build(
@@ -535,6 +547,10 @@ pub const CALLS: &[Call] = &[
         seen(spherule::device::buffer::Buffer::len(&s.draw()))
     })
     .on_gpu(),
+    Call::new("spherule::device::busy::keep_busy", |s| {
+        seen(spherule::device::busy::keep_busy(s.gpu(), s.draw()))
+    })
+    .on_gpu(),
     Call::new("spherule::device::canary::Canary::objection", |s| {
         seen(spherule::device::canary::Canary::objection(
             &s.draw(),
@@ -576,6 +592,10 @@ pub const CALLS: &[Call] = &[
     }),
     Call::new("spherule::device::gpu::Gpu::clear", |s| {
         seen(spherule::device::gpu::Gpu::clear::<u32>(s.gpu(), &s.draw()))
+    })
+    .on_gpu(),
+    Call::new("spherule::device::gpu::Gpu::driver", |s| {
+        seen(spherule::device::gpu::Gpu::driver(s.gpu()))
     })
     .on_gpu(),
     Call::new("spherule::device::gpu::Gpu::has_f64", |s| {
@@ -701,6 +721,10 @@ pub const CALLS: &[Call] = &[
     Call::new("spherule::device::kernel::LaunchTime::best", |s| {
         seen(spherule::device::kernel::LaunchTime::best(&s.draw()))
     }),
+    Call::new("spherule::device::rung::f64_rate", |s| {
+        seen(spherule::device::rung::f64_rate(s.gpu()))
+    })
+    .on_gpu(),
     Call::new("spherule::device::rung::module", |s| {
         seen(spherule::device::rung::module(s.gpu(), s.draw()))
     })
@@ -1282,10 +1306,6 @@ pub const CALLS: &[Call] = &[
         seen(spherule::trace::gpu::GpuTracer::bytes(&s.draw()))
     })
     .on_gpu(),
-    Call::new("spherule::trace::gpu::GpuTracer::heat", |s| {
-        seen(spherule::trace::gpu::GpuTracer::heat(&s.draw(), &s.draw()))
-    })
-    .on_gpu(),
     Call::new("spherule::trace::gpu::GpuTracer::hits", |s| {
         seen(spherule::trace::gpu::GpuTracer::hits(&s.draw(), &s.draw()))
     })
@@ -1546,10 +1566,10 @@ pub const CALLS: &[Call] = &[
         ))
     }),
     Call::new(
-        "spherule_kernel::arithmetic::double_single::DoubleSingle::difference",
+        "spherule_kernel::arithmetic::double_word::DoubleWord::difference",
         |s| {
             seen(
-                spherule_kernel::arithmetic::double_single::DoubleSingle::difference(
+                spherule_kernel::arithmetic::double_word::DoubleWord::<f32>::difference(
                     s.draw(),
                     s.draw(),
                 ),
@@ -1557,10 +1577,10 @@ pub const CALLS: &[Call] = &[
         },
     ),
     Call::new(
-        "spherule_kernel::arithmetic::double_single::DoubleSingle::divided_by",
+        "spherule_kernel::arithmetic::double_word::DoubleWord::divided_by",
         |s| {
             seen(
-                spherule_kernel::arithmetic::double_single::DoubleSingle::divided_by(
+                spherule_kernel::arithmetic::double_word::DoubleWord::<f32>::divided_by(
                     s.draw(),
                     s.draw(),
                 ),
@@ -1568,28 +1588,14 @@ pub const CALLS: &[Call] = &[
         },
     ),
     Call::new(
-        "spherule_kernel::arithmetic::double_single::DoubleSingle::from_float",
-        |s| seen(spherule_kernel::arithmetic::double_single::DoubleSingle::from_float(s.draw())),
+        "spherule_kernel::arithmetic::double_word::DoubleWord::from_float",
+        |s| seen(spherule_kernel::arithmetic::double_word::DoubleWord::<f32>::from_float(s.draw())),
     ),
     Call::new(
-        "spherule_kernel::arithmetic::double_single::DoubleSingle::minus",
+        "spherule_kernel::arithmetic::double_word::DoubleWord::minus",
         |s| {
             seen(
-                spherule_kernel::arithmetic::double_single::DoubleSingle::minus(s.draw(), s.draw()),
-            )
-        },
-    ),
-    Call::new(
-        "spherule_kernel::arithmetic::double_single::DoubleSingle::plus",
-        |s| {
-            seen(spherule_kernel::arithmetic::double_single::DoubleSingle::plus(s.draw(), s.draw()))
-        },
-    ),
-    Call::new(
-        "spherule_kernel::arithmetic::double_single::DoubleSingle::product",
-        |s| {
-            seen(
-                spherule_kernel::arithmetic::double_single::DoubleSingle::product(
+                spherule_kernel::arithmetic::double_word::DoubleWord::<f32>::minus(
                     s.draw(),
                     s.draw(),
                 ),
@@ -1597,22 +1603,10 @@ pub const CALLS: &[Call] = &[
         },
     ),
     Call::new(
-        "spherule_kernel::arithmetic::double_single::DoubleSingle::square_root",
-        |s| seen(spherule_kernel::arithmetic::double_single::DoubleSingle::square_root(s.draw())),
-    ),
-    Call::new(
-        "spherule_kernel::arithmetic::double_single::DoubleSingle::times",
+        "spherule_kernel::arithmetic::double_word::DoubleWord::plus",
         |s| {
             seen(
-                spherule_kernel::arithmetic::double_single::DoubleSingle::times(s.draw(), s.draw()),
-            )
-        },
-    ),
-    Call::new(
-        "spherule_kernel::arithmetic::double_single::DoubleSingle::times_float",
-        |s| {
-            seen(
-                spherule_kernel::arithmetic::double_single::DoubleSingle::times_float(
+                spherule_kernel::arithmetic::double_word::DoubleWord::<f32>::plus(
                     s.draw(),
                     s.draw(),
                 ),
@@ -1620,10 +1614,52 @@ pub const CALLS: &[Call] = &[
         },
     ),
     Call::new(
-        "spherule_kernel::arithmetic::double_single::DoubleSingle::total",
+        "spherule_kernel::arithmetic::double_word::DoubleWord::product",
         |s| {
             seen(
-                spherule_kernel::arithmetic::double_single::DoubleSingle::total(s.draw(), s.draw()),
+                spherule_kernel::arithmetic::double_word::DoubleWord::<f32>::product(
+                    s.draw(),
+                    s.draw(),
+                ),
+            )
+        },
+    ),
+    Call::new(
+        "spherule_kernel::arithmetic::double_word::DoubleWord::square_root",
+        |s| {
+            seen(spherule_kernel::arithmetic::double_word::DoubleWord::<f32>::square_root(s.draw()))
+        },
+    ),
+    Call::new(
+        "spherule_kernel::arithmetic::double_word::DoubleWord::times",
+        |s| {
+            seen(
+                spherule_kernel::arithmetic::double_word::DoubleWord::<f32>::times(
+                    s.draw(),
+                    s.draw(),
+                ),
+            )
+        },
+    ),
+    Call::new(
+        "spherule_kernel::arithmetic::double_word::DoubleWord::times_float",
+        |s| {
+            seen(
+                spherule_kernel::arithmetic::double_word::DoubleWord::<f32>::times_float(
+                    s.draw(),
+                    s.draw(),
+                ),
+            )
+        },
+    ),
+    Call::new(
+        "spherule_kernel::arithmetic::double_word::DoubleWord::total",
+        |s| {
+            seen(
+                spherule_kernel::arithmetic::double_word::DoubleWord::<f32>::total(
+                    s.draw(),
+                    s.draw(),
+                ),
             )
         },
     ),
@@ -1648,18 +1684,15 @@ pub const CALLS: &[Call] = &[
     }),
     Call::new(
         "spherule_kernel::arithmetic::error_free::fast_two_sum",
-        |s| {
-            seen(spherule_kernel::arithmetic::error_free::fast_two_sum(
-                s.draw(),
-                s.draw(),
-            ))
-        },
+        |s| seen(spherule_kernel::arithmetic::error_free::fast_two_sum::<f32>(s.draw(), s.draw())),
     ),
     Call::new("spherule_kernel::arithmetic::error_free::split", |s| {
-        seen(spherule_kernel::arithmetic::error_free::split(s.draw()))
+        seen(spherule_kernel::arithmetic::error_free::split::<f32>(
+            s.draw(),
+        ))
     }),
     Call::new("spherule_kernel::arithmetic::error_free::two_diff", |s| {
-        seen(spherule_kernel::arithmetic::error_free::two_diff(
+        seen(spherule_kernel::arithmetic::error_free::two_diff::<f32>(
             s.draw(),
             s.draw(),
         ))
@@ -1667,14 +1700,14 @@ pub const CALLS: &[Call] = &[
     Call::new(
         "spherule_kernel::arithmetic::error_free::two_product",
         |s| {
-            seen(spherule_kernel::arithmetic::error_free::two_product(
+            seen(spherule_kernel::arithmetic::error_free::two_product::<f32>(
                 s.draw(),
                 s.draw(),
             ))
         },
     ),
     Call::new("spherule_kernel::arithmetic::error_free::two_sum", |s| {
-        seen(spherule_kernel::arithmetic::error_free::two_sum(
+        seen(spherule_kernel::arithmetic::error_free::two_sum::<f32>(
             s.draw(),
             s.draw(),
         ))
@@ -1690,6 +1723,12 @@ pub const CALLS: &[Call] = &[
     }),
     Call::new("spherule_kernel::arithmetic::strict::mul", |s| {
         seen(spherule_kernel::arithmetic::strict::mul(s.draw(), s.draw()))
+    }),
+    Call::new("spherule_kernel::arithmetic::strict::mul_wide", |s| {
+        seen(spherule_kernel::arithmetic::strict::mul_wide(
+            s.draw(),
+            s.draw(),
+        ))
     }),
     Call::new("spherule_kernel::arithmetic::strict::sub", |s| {
         seen(spherule_kernel::arithmetic::strict::sub(s.draw(), s.draw()))
@@ -2852,12 +2891,6 @@ pub const CALLS: &[Call] = &[
             s.draw(),
         ))
     }),
-    Call::new("spherule_kernel::precision::double::two_sum", |s| {
-        seen(spherule_kernel::precision::double::two_sum::<f32>(
-            s.draw(),
-            s.draw(),
-        ))
-    }),
     Call::new("spherule_kernel::precision::intersect", |s| {
         seen(spherule_kernel::precision::intersect(
             s.draw(),
@@ -3178,6 +3211,7 @@ impl Odd for spherule::accuracy::measure::Steps {
     fn odd(s: &mut Source) -> Self {
         spherule::accuracy::measure::Steps {
             wide: Odd::odd(s),
+            midpoint: Odd::odd(s),
             filter: Odd::odd(s),
             pairs: Odd::odd(s),
             distilled_c: Odd::odd(s),
@@ -3315,6 +3349,7 @@ impl Odd for spherule::device::canary::Canary {
             keeps_subnormals: Odd::odd(s),
             wide: Odd::odd(s),
             wide_sums: Odd::odd(s),
+            wide_products: Odd::odd(s),
         }
     }
 }
@@ -3638,9 +3673,9 @@ impl Odd for spherule_kernel::accel::node::Node {
     }
 }
 
-impl Odd for spherule_kernel::arithmetic::double_single::DoubleSingle {
+impl Odd for spherule_kernel::arithmetic::double_word::DoubleWord<f32> {
     fn odd(s: &mut Source) -> Self {
-        spherule_kernel::arithmetic::double_single::DoubleSingle {
+        spherule_kernel::arithmetic::double_word::DoubleWord::<f32> {
             high: Odd::odd(s),
             low: Odd::odd(s),
         }

@@ -4,8 +4,8 @@
 //! Δ, b and c are written as sums of exact products, and summed by
 //! [`distill`](crate::arithmetic::distill). Each is then right to about 40 bits, whatever cancels,
 //! and zero where it is zero; the exception is a sum within 2⁻¹⁰⁰ of cancelling completely, which
-//! floats of one binade cannot reach. The remaining operations add numbers of one sign, so t is
-//! within 1 ulp.
+//! floats of one binade cannot reach. The remaining operations add numbers of one sign, so roots
+//! are right to [`ERROR`].
 //!
 //! Lengths and directions are multiplied by 2²⁸ before, so that no product of theirs is subnormal
 //! that counts: a component may be 2⁻⁷⁵ of the largest length. The largest sum, Δ, stays below

@@ -6,7 +6,12 @@
 //! the same, bit for bit. Each step is evaluated only where the ones before cannot decide, after J.
 //! R. Shewchuk's adaptive predicates (Discrete Comput. Geom. 18 (1997) 305):
 //!
-//! 1. With 64-bit floats, [`wide`], for hits and misses. Without them, three steps:
+//! 1. With 64-bit floats, two steps:
+//!    - the formulas of [`double`](super::double) with bounds on their errors ([`wide`]);
+//!    - the midpoint between two floats in pairs of 64-bit floats (`midpoint.rs`), for hits that
+//!      the former leaves there, one in 2¹⁸ or so.
+//!
+//!    Without them, three:
 //!    - a filter (`filter.rs`) in f32, for misses;
 //!    - pairs of floats, as in [`super::compensated`]: the sign of Δ is certain where |Δ| > E₂ =
 //!      2⁻³⁸ (a r² + k·k + |k||o||d|), and a root where its error does not reach to the midpoint
@@ -20,6 +25,8 @@
 
 mod distilled;
 mod filter;
+#[cfg(any(not(target_arch = "spirv"), feature = "f64"))]
+mod midpoint;
 mod rounding;
 pub mod wide;
 
@@ -45,14 +52,16 @@ const WORTH_A_TRY: f32 = two_to_minus(28);
 pub enum Stage {
     /// 64-bit floats.
     Wide = 0,
+    /// The midpoint between two floats, in pairs of 64-bit floats.
+    Midpoint = 1,
     /// The filter.
-    Filter = 1,
+    Filter = 2,
     /// Pairs of floats.
-    Pairs = 2,
+    Pairs = 3,
     /// Pairs of floats, with c distilled.
-    DistilledC = 3,
+    DistilledC = 4,
     /// Distillation of everything.
-    Distilled = 4,
+    Distilled = 5,
 }
 
 impl Precision for Certified {
@@ -74,16 +83,19 @@ impl Precision for Certified {
 #[inline]
 #[must_use]
 pub fn intersect_with_stage(sphere: Sphere, ray: &Ray) -> (f32, Stage) {
-    let line = wide::WideRay {
-        origin: Lane3::of(ray.origin).widened(),
-        direction: Lane3::of(ray.direction).widened(),
-        t_min: f64::from(ray.t_min),
-        t_max: f64::from(ray.t_max),
-    };
-    let center = Lane3::of(sphere.center()).widened();
-    let answer = line.intersect(center, f64::from(sphere.radius()));
+    let line = wide::WideRay::of(ray);
+    let (center, radius) = (
+        Lane3::of(sphere.center()).widened(),
+        f64::from(sphere.radius()),
+    );
+    let roots = line.roots(center, radius);
+    let answer = line.choose(&roots);
     if answer.is_certain {
         return (answer.t as f32, Stage::Wide);
+    }
+    let rounded = line.round(center, radius, &roots);
+    if rounded.is_certain {
+        return (rounded.t, Stage::Midpoint);
     }
     let pairs = Quadratic::of(sphere, ray);
     (intersect_distilled(&pairs, ray), Stage::Distilled)

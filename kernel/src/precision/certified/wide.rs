@@ -34,6 +34,8 @@ use crate::hit::Hit;
 use crate::lane::{Lane, Lane3};
 use crate::precision::compensated::two_to_minus;
 use crate::precision::double::Quadratic;
+#[cfg(any(not(target_arch = "spirv"), feature = "f64"))]
+use crate::ray::Ray;
 
 /// What 64-bit floats tell of a ray and a sphere.
 #[derive(Clone, Copy, Debug)]
@@ -44,6 +46,23 @@ pub struct Answer<L: Lane> {
     pub is_hit: L::Mask,
     /// The parameter of the hit, rounded to 32 bits; [`Hit::NONE_T`] for no hit.
     pub t: L,
+}
+
+/// The roots of a line and a sphere, with bounds on their errors.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Bounded<L: Lane> {
+    /// Whether the line certainly misses the sphere.
+    misses: L::Mask,
+    /// Whether the line certainly meets the sphere; the rest is right there.
+    pub(super) meets: L::Mask,
+    /// The smaller root.
+    pub(super) near: L,
+    /// How far it may be off.
+    pub(super) near_error: L,
+    /// The larger root.
+    pub(super) far: L,
+    /// How far it may be off.
+    pub(super) far_error: L,
 }
 
 /// The line and the interval of a ray, in lanes of 64-bit floats.
@@ -59,12 +78,27 @@ pub struct WideRay<L> {
     pub t_max: L,
 }
 
+#[cfg(any(not(target_arch = "spirv"), feature = "f64"))]
+impl WideRay<f64> {
+    /// The line and the interval of a ray.
+    #[inline(always)]
+    #[must_use]
+    pub(super) fn of(ray: &Ray) -> Self {
+        Self {
+            origin: Lane3::of(ray.origin).widened(),
+            direction: Lane3::of(ray.direction).widened(),
+            t_min: f64::from(ray.t_min),
+            t_max: f64::from(ray.t_max),
+        }
+    }
+}
+
 impl<L: Lane> WideRay<L> {
-    /// Intersects the ray with a sphere. With NaN nothing is certain.
+    /// The roots of the line and a sphere. With NaN nothing is certain.
     // No closures: in lanes they would be compiled without the caller's instructions.
     #[inline(always)]
     #[must_use]
-    pub fn intersect(&self, center: Lane3<L>, radius: L) -> Answer<L> {
+    pub(super) fn roots(&self, center: Lane3<L>, radius: L) -> Bounded<L> {
         let quadratic = Quadratic::of(self.origin, self.direction, center, radius);
         let Quadratic {
             a,
@@ -95,7 +129,34 @@ impl<L: Lane> WideRay<L> {
         let (none, of_c) = (a.splat(0.0), c_error * roots.over_size);
         let near_error = roots.near.abs() * relative + L::select(roots.leaves, none, of_c);
         let far_error = roots.far.abs() * relative + L::select(roots.leaves, of_c, none);
+        Bounded {
+            misses,
+            meets,
+            near: roots.near,
+            near_error,
+            far: roots.far,
+            far_error,
+        }
+    }
 
+    /// Intersects the ray with a sphere.
+    #[inline(always)]
+    #[must_use]
+    pub fn intersect(&self, center: Lane3<L>, radius: L) -> Answer<L> {
+        self.choose(&self.roots(center, radius))
+    }
+
+    /// The smaller root that lies in the ray's interval once it is rounded.
+    #[inline(always)]
+    #[must_use]
+    pub(super) fn choose(&self, roots: &Bounded<L>) -> Answer<L> {
+        let Bounded {
+            misses,
+            meets,
+            near_error,
+            far_error,
+            ..
+        } = *roots;
         // The smaller root, rounded, is certainly in the interval, or certainly before it.
         let is_ahead = (roots.near - near_error).to_single().simd_ge(self.t_min);
         let is_before = (roots.near + near_error).to_single().simd_lt(self.t_min);
@@ -108,7 +169,7 @@ impl<L: Lane> WideRay<L> {
         Answer {
             is_certain: misses | is_right,
             is_hit,
-            t: L::select(is_hit, t, a.splat(Hit::NONE_T)),
+            t: L::select(is_hit, t, t.splat(Hit::NONE_T)),
         }
     }
 }

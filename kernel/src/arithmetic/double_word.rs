@@ -1,44 +1,43 @@
-//! [`DoubleSingle`]: a number as the unevaluated sum of two floats. Runs on the GPU and on the
-//! CPU.
+//! [`DoubleWord`]: a number as the unevaluated sum of two floats. Runs on the GPU and on the CPU.
 //!
 //! The algorithms and their bounds are those of M. Joldes, J.-M. Muller and V. Popescu, Tight and
 //! rigorous error bounds for basic building blocks of double-word arithmetic, ACM Trans. Math.
-//! Softw. 44 (2017), with u = 2⁻²⁴: the sum is off by at most 3u² / (1 − 4u), the product by 7u²,
-//! the product with a float by 3u², relative to the result. Quotient and square root start from the
-//! device's own result, which may be off by a few units in the last place, and correct it once:
-//! their relative error is the square of the start's error plus a few u².
-
-// On the CPU, std has `f32::sqrt`.
-#[cfg(target_arch = "spirv")]
-use spirv_std::num_traits::Float as _;
+//! Softw. 44 (2017), with u = 2⁻²⁴ for 32 bits and u = 2⁻⁵³ for 64: the sum is off by at most 3u² /
+//! (1 − 4u), the product by 7u², the product with a float by 3u², relative to the result. Quotient
+//! and square root start from the device's own result, which may be off by a few units in the last
+//! place, and correct it once: their relative error is the square of the start's error plus a few
+//! u².
 
 use super::error_free::{fast_two_sum, two_diff, two_product, two_sum};
-use super::strict::{add, mul};
+use crate::lane::Word;
 
 /// The number `high + low`, with `high` the float nearest to it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct DoubleSingle {
+pub struct DoubleWord<L> {
     /// The float that is nearest to the number.
-    pub high: f32,
+    pub high: L,
     /// The number minus `high`.
-    pub low: f32,
+    pub low: L,
 }
 
-impl DoubleSingle {
+/// Two floats of 32 bits: about 48 bits.
+pub(crate) type DoubleSingle = DoubleWord<f32>;
+
+impl<L: Word> DoubleWord<L> {
     /// The float as a pair, exactly.
     #[inline]
     #[must_use]
-    pub fn from_float(value: f32) -> Self {
+    pub fn from_float(value: L) -> Self {
         Self {
             high: value,
-            low: 0.0,
+            low: value.splat(0.0),
         }
     }
 
     /// `a - b`, exactly.
     #[inline]
     #[must_use]
-    pub fn difference(a: f32, b: f32) -> Self {
+    pub fn difference(a: L, b: L) -> Self {
         let (high, low) = two_diff(a, b);
         Self { high, low }
     }
@@ -46,7 +45,7 @@ impl DoubleSingle {
     /// `a + b`, exactly.
     #[inline]
     #[must_use]
-    pub fn total(a: f32, b: f32) -> Self {
+    pub fn total(a: L, b: L) -> Self {
         let (high, low) = two_sum(a, b);
         Self { high, low }
     }
@@ -54,7 +53,7 @@ impl DoubleSingle {
     /// `a · b`, exactly.
     #[inline]
     #[must_use]
-    pub fn product(a: f32, b: f32) -> Self {
+    pub fn product(a: L, b: L) -> Self {
         let (high, low) = two_product(a, b);
         Self { high, low }
     }
@@ -65,8 +64,8 @@ impl DoubleSingle {
     pub fn plus(self, other: Self) -> Self {
         let (high, high_error) = two_sum(self.high, other.high);
         let (low, low_error) = two_sum(self.low, other.low);
-        let (high, carried) = fast_two_sum(high, add(high_error, low));
-        let (high, low) = fast_two_sum(high, add(low_error, carried));
+        let (high, carried) = fast_two_sum(high, high_error.add_strict(low));
+        let (high, low) = fast_two_sum(high, low_error.add_strict(carried));
         Self { high, low }
     }
 
@@ -77,8 +76,8 @@ impl DoubleSingle {
     pub fn minus(self, other: Self) -> Self {
         let (high, high_error) = two_diff(self.high, other.high);
         let (low, low_error) = two_diff(self.low, other.low);
-        let (high, carried) = fast_two_sum(high, add(high_error, low));
-        let (high, low) = fast_two_sum(high, add(low_error, carried));
+        let (high, carried) = fast_two_sum(high, high_error.add_strict(low));
+        let (high, low) = fast_two_sum(high, low_error.add_strict(carried));
         Self { high, low }
     }
 
@@ -87,17 +86,18 @@ impl DoubleSingle {
     #[must_use]
     pub fn times(self, other: Self) -> Self {
         let (high, error) = two_product(self.high, other.high);
-        let cross = add(mul(self.high, other.low), mul(self.low, other.high));
-        let (high, low) = fast_two_sum(high, add(error, cross));
+        let cross = self.high.mul_strict(other.low);
+        let cross = cross.add_strict(self.low.mul_strict(other.high));
+        let (high, low) = fast_two_sum(high, error.add_strict(cross));
         Self { high, low }
     }
 
     /// `self · factor`: `DWTimesFP2`.
     #[inline]
     #[must_use]
-    pub fn times_float(self, factor: f32) -> Self {
+    pub fn times_float(self, factor: L) -> Self {
         let (high, error) = two_product(self.high, factor);
-        let (high, low) = fast_two_sum(high, add(error, mul(self.low, factor)));
+        let (high, low) = fast_two_sum(high, error.add_strict(self.low.mul_strict(factor)));
         Self { high, low }
     }
 
@@ -115,13 +115,17 @@ impl DoubleSingle {
     #[inline]
     #[must_use]
     pub fn square_root(self) -> Self {
-        if self.high > 0.0 {
+        let zero = self.high.splat(0.0);
+        if self.high.simd_gt(zero) {
             let root = self.high.sqrt();
             let remainder = self.minus(Self::product(root, root));
-            let (high, low) = fast_two_sum(root, remainder.high / add(root, root));
+            let (high, low) = fast_two_sum(root, remainder.high / root.add_strict(root));
             Self { high, low }
         } else {
-            Self::default()
+            Self {
+                high: zero,
+                low: zero,
+            }
         }
     }
 }
