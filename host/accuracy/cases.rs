@@ -92,6 +92,13 @@ impl Case {
         self.probes.iter().map(|probe| (probe.ray, probe.sphere))
     }
 
+    /// Those of which exact arithmetic says what the answer is.
+    pub fn decided(&self) -> impl Iterator<Item = (Ray, Sphere)> {
+        let is_decided = |probe: &&Probe| matches!(probe.must, Must::BeTrue(_) | Must::Miss);
+        let decided = self.probes.iter().filter(is_decided);
+        decided.map(|probe| (probe.ray, probe.sphere))
+    }
+
     /// The verdict on `rung` for this case on `device`.
     ///
     /// # Errors

@@ -7,6 +7,7 @@
 //! | [`scene_cases`] | the hard cases with more than one ray or sphere |
 //! | [`ask`] | functions of the kernel, run on a device |
 //! | [`families`] | families of rays, each hard in its own way |
+//! | [`hard_rays`] | hard rays with exact answers, as files for other programs |
 //! | [`screen`] | 64-bit arithmetic with an error bound, which saves most of the oracle's work |
 //! | [`measure`] | the errors of a rung |
 //! | [`scene_rays`] | the rays of a scene as a family |
@@ -19,6 +20,7 @@ pub mod ask;
 pub mod cases;
 pub mod families;
 pub mod frames;
+pub mod hard_rays;
 pub mod measure;
 pub mod oracle;
 pub mod price;

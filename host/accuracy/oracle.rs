@@ -135,11 +135,51 @@ impl Intersection {
     /// reaches.
     #[must_use]
     pub fn nearest(&self, ray: &Ray) -> Option<f32> {
+        self.nearest_root(ray).map(|(_, t)| t)
+    }
+
+    /// As [`Intersection::nearest`], with which root it is.
+    #[must_use]
+    pub fn nearest_root(&self, ray: &Ray) -> Option<(Root, f32)> {
         let end = ray.end();
         let in_time = |t: &f32| *t >= ray.t_min && *t < ray.t_max && *t < end;
         [Root::Near, Root::Far]
             .into_iter()
-            .find_map(|root| self.root(root).filter(in_time))
+            .find_map(|root| Some((root, self.root(root).filter(in_time)?)))
+    }
+
+    /// The largest 64-bit float that is not above the root, and the smallest that is not below it.
+    /// `None` if the line misses.
+    #[must_use]
+    pub fn bracket(&self, root: Root) -> Option<[f64; 2]> {
+        if !self.meets() {
+            return None;
+        }
+        let magnitude = self.discriminant.magnitude();
+        let sign = match root {
+            Root::Near => Sign::Minus,
+            Root::Far => Sign::Plus,
+        };
+        let mut bits = 128_u64;
+        loop {
+            // Between these is √Δ · 2^bits; they are the same if it is an integer.
+            let scaled = magnitude << (2 * bits);
+            let low = scaled.sqrt();
+            let high = if &low * &low == scaled {
+                low.clone()
+            } else {
+                &low + 1_u32
+            };
+            let [near, far] = [low, high].map(|root| {
+                let numerator = -(&self.b << bits) + BigInt::from_biguint(sign, root);
+                [false, true]
+                    .map(|up| directed(&numerator, &self.a, self.exponent - bits as i64, up))
+            });
+            if near == far {
+                return Some(near);
+            }
+            bits *= 2;
+        }
     }
 
     /// The sign of the exact root minus `t`, a finite float; `None` if the line misses.
@@ -244,6 +284,36 @@ fn to_integers(values: &[f32]) -> (Vec<BigInt>, i64) {
     (integers, common)
 }
 
+/// The largest 64-bit float that is not above `numerator / denominator · 2^exponent`, or with `up`
+/// the smallest that is not below it. The denominator is positive, and the quotient, if it is not
+/// zero, neither subnormal nor too large.
+fn directed(numerator: &BigInt, denominator: &BigInt, exponent: i64, up: bool) -> f64 {
+    let is_negative = numerator.sign() == Sign::Minus;
+    let (n, d) = (numerator.magnitude(), denominator.magnitude());
+    if n.bits() == 0 {
+        return 0.0;
+    }
+    // The quotient with 53 or 54 bits.
+    let mut shift = 53 - (n.bits() as i64 - d.bits() as i64);
+    let (n, d) = if shift >= 0 {
+        (n << shift as u64, d.clone())
+    } else {
+        (n.clone(), d << (-shift) as u64)
+    };
+    let (mut quotient, mut is_exact) = (&n / &d, (&n % &d).bits() == 0);
+    if quotient.bits() > 53 {
+        is_exact &= !quotient.bit(0);
+        quotient >>= 1;
+        shift -= 1;
+    }
+    if !is_exact && up != is_negative {
+        quotient += 1_u32;
+    }
+    let integer = quotient.iter_u64_digits().next().unwrap_or(0) as f64;
+    let magnitude = integer * 2.0_f64.powi((exponent - shift) as i32);
+    if is_negative { -magnitude } else { magnitude }
+}
+
 /// `numerator / denominator · 2^exponent` as the nearest float, ties to even, with subnormals and
 /// infinity as in IEEE 754.
 fn round(numerator: &BigInt, denominator: &BigInt, exponent: i64) -> f32 {
@@ -325,6 +395,23 @@ mod tests {
         assert_eq!(hit.side_of_origin(), 1);
         // A line through the centre has the largest margin.
         assert_eq!(hit.margin(), 1.0);
+        assert_eq!(hit.bracket(Root::Near), Some([2.5, 2.5]));
+        let miss = line([0.0; 3], [1.0, 0.0, 0.0], [0.0, 3.0, 0.0], 0.5);
+        assert_eq!(miss.bracket(Root::Near), None);
+    }
+
+    /// 3 − √¾ = 2.13397459621556135324 and −3 − √¾ = −3.86602540378443864676, by a program that
+    /// computes with sixty decimal digits.
+    #[test]
+    fn brackets_are_the_next_floats() {
+        let known = [
+            (-3.0, [2.133974596215561, 2.1339745962155616]),
+            (3.0, [-3.866025403784439, -3.8660254037844384]),
+        ];
+        for (start, bracket) in known {
+            let hit = line([start, 0.5, 0.0], [1.0, 0.0, 0.0], [0.0; 3], 1.0);
+            assert_eq!(hit.bracket(Root::Near), Some(bracket));
+        }
     }
 
     /// Light is transmitted up to the critical angle.

@@ -21,8 +21,8 @@ use crate::error::{Error, Result};
 use crate::render::whole_image;
 use crate::scene::Scene;
 use crate::trace::CpuTracer;
-use crate::write::Output;
 use crate::write::same::{refuse_clashes, refuse_inputs};
+use crate::write::{Output, create_folder};
 
 /// Creates `folder` if necessary, and checks that files can be created in it.
 ///
@@ -30,11 +30,7 @@ use crate::write::same::{refuse_clashes, refuse_inputs};
 ///
 /// [`Error::Output`] if they cannot.
 pub fn prepare(folder: &Path) -> Result<()> {
-    std::fs::create_dir_all(folder).map_err(|error| Error::Output {
-        path: folder.into(),
-        reason: format!("cannot be created: {error}"),
-        help: "name a folder in a directory that may be written".into(),
-    })?;
+    create_folder(folder)?;
     outputs(folder)?;
     Ok(())
 }

@@ -146,8 +146,17 @@ pub(super) struct CheckArguments {
 
     /// Only measure what the device's driver does to arithmetic, and print a row for the table of
     /// known devices in docs/numerics.md
-    #[arg(long)]
+    #[arg(long, conflicts_with = "export")]
     pub(super) arithmetic: bool,
+
+    /// Check nothing: write hard rays with their exact answers as files into this folder, for other
+    /// programs, and what each rung answers (docs/hard-rays.md)
+    #[arg(long, value_name = "FOLDER", conflicts_with = "json")]
+    pub(super) export: Option<PathBuf>,
+
+    /// With --export: rays of each family
+    #[arg(long, value_name = "N", default_value_t = 1000, requires = "export", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub(super) rays: u32,
 
     /// Print JSON
     #[arg(long)]

@@ -10,10 +10,11 @@ use super::args::CheckArguments;
 use super::arithmetic::Arithmetic;
 use super::write_json;
 use crate::accuracy::cases::{Verdict, catalogue};
+use crate::accuracy::hard_rays;
 use crate::accuracy::scene_cases::SCENE_CASES;
 use crate::device::Device;
 use crate::error::Result;
-use crate::write::Output;
+use crate::write::{Output, create_folder};
 
 #[derive(Debug, Serialize)]
 struct CheckReport {
@@ -34,6 +35,13 @@ struct CaseReport {
 pub(super) fn run(arguments: &CheckArguments) -> Result<ExitCode> {
     let stdout = Output::stdout()?;
     let (device, why) = Device::open(&arguments.device)?;
+    if let Some(folder) = &arguments.export {
+        create_folder(folder)?;
+        let rays = hard_rays::export(folder, &device, arguments.rays as usize)?;
+        let text = format!("wrote {rays} rays into {}\n", folder.display());
+        stdout.write(text.as_bytes())?;
+        return Ok(ExitCode::SUCCESS);
+    }
     let arithmetic = Arithmetic::of(&device, why)?;
     if arguments.arithmetic {
         if arguments.json {

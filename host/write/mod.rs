@@ -35,7 +35,7 @@ pub use format::Format;
 #[cfg(feature = "cli")]
 pub use image::ReservedMemory;
 #[cfg(feature = "lab")]
-pub use output::Output;
+pub use output::{Output, create_folder};
 #[cfg(feature = "cli")]
 pub(crate) use temporary::remove_all as remove_unfinished;
 #[cfg(feature = "cli")]

@@ -54,6 +54,19 @@ enum Place {
     File(PathBuf),
 }
 
+/// Creates a folder for outputs, and those above it, unless they exist.
+///
+/// # Errors
+///
+/// [`Error::Output`] if it cannot be created.
+pub fn create_folder(folder: &Path) -> Result<()> {
+    std::fs::create_dir_all(folder).map_err(|error| Error::Output {
+        path: folder.into(),
+        reason: format!("cannot be created: {error}"),
+        help: "name a folder in a directory that may be written".into(),
+    })
+}
+
 impl Output {
     /// An output of text or numbers; `-` is standard output.
     ///

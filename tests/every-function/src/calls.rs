@@ -215,6 +215,9 @@ pub const CALLS: &[Call] = &[
             &s.many()[..],
         ))
     }),
+    Call::new("spherule::accuracy::cases::Case::decided", |s| {
+        seen(spherule::accuracy::cases::Case::decided(&s.draw()))
+    }),
     Call::new("spherule::accuracy::cases::Case::judge", |s| {
         seen(spherule::accuracy::cases::Case::judge(
             &s.draw(),
@@ -253,6 +256,13 @@ pub const CALLS: &[Call] = &[
             &s.many()[..],
             &s.draw(),
             spherule::render::QUIET,
+        ))
+    }),
+    Call::new("spherule::accuracy::hard_rays::export", |s| {
+        seen(spherule::accuracy::hard_rays::export(
+            &s.folder(),
+            &spherule::Device::Cpu,
+            usize::from(s.draw::<u8>()),
         ))
     }),
     Call::new("spherule::accuracy::measure::Escalation as Display", |s| {
@@ -302,6 +312,12 @@ pub const CALLS: &[Call] = &[
             &s.many()[..],
         ))
     }),
+    Call::new("spherule::accuracy::oracle::Intersection::bracket", |s| {
+        seen(spherule::accuracy::oracle::Intersection::bracket(
+            &s.draw(),
+            s.draw(),
+        ))
+    }),
     Call::new("spherule::accuracy::oracle::Intersection::compare", |s| {
         seen(spherule::accuracy::oracle::Intersection::compare(
             &s.draw(),
@@ -321,6 +337,15 @@ pub const CALLS: &[Call] = &[
             &s.draw(),
         ))
     }),
+    Call::new(
+        "spherule::accuracy::oracle::Intersection::nearest_root",
+        |s| {
+            seen(spherule::accuracy::oracle::Intersection::nearest_root(
+                &s.draw(),
+                &s.draw(),
+            ))
+        },
+    ),
     Call::new("spherule::accuracy::oracle::Intersection::of", |s| {
         seen(spherule::accuracy::oracle::Intersection::of(
             &s.draw(),

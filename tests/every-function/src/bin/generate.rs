@@ -180,6 +180,16 @@ const WRITTEN: &[(&str, &[&str])] = &[
 
 /// Expressions for arguments, by function and argument name.
 const ARGUMENTS: &[(&str, &str, &str)] = &[
+    (
+        "spherule::accuracy::hard_rays::export",
+        "folder",
+        "&s.folder()",
+    ),
+    (
+        "spherule::accuracy::hard_rays::export",
+        "rays",
+        "usize::from(s.draw::<u8>())",
+    ),
     ("spherule::bench::export::export", "folder", "&s.folder()"),
     ("spherule::render::cpu::render", "launch", "&s.launch()"),
     ("spherule::render::cpu::render_to", "launch", "&s.launch()"),

@@ -1,0 +1,105 @@
+//! `spherule check --export`, and the two programs that score answers: docs/hard-rays.md.
+
+use std::path::Path;
+use std::process::Command;
+
+/// What a program prints; it must succeed.
+fn printed(command: &mut Command) -> String {
+    let output = command.output().expect("the program starts");
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{command:?}: {said}");
+    String::from_utf8(output.stdout).expect("text")
+}
+
+/// The numbers of the last line: rays, false hits, missed hits, nearest floats, hits, worst ulp.
+fn totals(table: &str) -> Vec<u64> {
+    let last = table.lines().last().expect("a line");
+    let numbers = last.strip_prefix("all").expect("the line of all rays");
+    let numbers = numbers.split_whitespace().map(str::parse);
+    numbers.collect::<Result<_, _>>().expect("numbers")
+}
+
+#[test]
+fn the_scorers_agree_on_every_rung() {
+    const RAYS: u64 = 300;
+    let folder = tempfile::tempdir().expect("a folder");
+    let of = |name: &str| folder.path().join(name);
+    let spherule = assert_cmd::cargo::cargo_bin("spherule");
+    printed(
+        Command::new(spherule)
+            .args(["check", "--device", "cpu", "--rays", "300", "--export"])
+            .arg(folder.path()),
+    );
+    let sources = Path::new(env!("CARGO_MANIFEST_DIR")).join("benches/hard-rays");
+    let scorer = of("score");
+    printed(
+        Command::new("cc")
+            .args(["-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic", "-o"])
+            .arg(&scorer)
+            .arg(sources.join("score.c")),
+    );
+    let has_python = Command::new("python3").arg("--version").output().is_ok();
+    for (rung, is_right) in [("textbook", false), ("robust", false), ("certified", true)] {
+        let answers = of(&format!("answers-{rung}.txt"));
+        let mut score = Command::new(&scorer);
+        let table = printed(score.arg(of("hard-rays.txt")).arg(&answers));
+        if has_python {
+            let mut score = Command::new("python3");
+            score.arg(sources.join("score.py"));
+            let other = printed(score.arg(of("hard-rays.json")).arg(&answers));
+            assert_eq!(table, other, "{rung}");
+        }
+        let [rays, false_hits, missed, nearest, hits, worst] = totals(&table)[..] else {
+            panic!("{table}");
+        };
+        assert!(rays > 6 * RAYS && hits > rays / 4 && hits < rays, "{table}");
+        let is_perfect = (false_hits, missed, nearest, worst) == (0, 0, hits, 0);
+        assert_eq!(is_perfect, is_right, "{rung}:\n{table}");
+    }
+}
+
+/// Brackets are as narrow as 64-bit floats are, and round to the nearest 32-bit float.
+#[test]
+fn brackets_hold_the_nearest_floats() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let spherule = assert_cmd::cargo::cargo_bin("spherule");
+    printed(
+        Command::new(spherule)
+            .args(["check", "--device", "cpu", "--rays", "20", "--export"])
+            .arg(folder.path()),
+    );
+    let text = std::fs::read_to_string(folder.path().join("hard-rays.json")).expect("the file");
+    let suite: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+    let mut hits = 0;
+    for set in suite["sets"].as_array().expect("sets") {
+        for ray in set["rays"].as_array().expect("rays") {
+            if ray["answer"] != "hit" {
+                continue;
+            }
+            let number = |value: &serde_json::Value| parsed(value.as_str().expect("a float"));
+            let [low, high] = [0, 1].map(|index| number(&ray["bracket"][index]));
+            let t = number(&ray["t"]);
+            assert!(low == high || high == low.next_up(), "{ray}");
+            // Both ends round to it, unless one is half-way between two.
+            assert!(
+                [low, high].iter().any(|end| f64::from(*end as f32) == t),
+                "{ray}"
+            );
+            hits += 1;
+        }
+    }
+    assert!(hits > 100);
+}
+
+/// A number in the hexadecimal form of C99.
+fn parsed(text: &str) -> f64 {
+    let (sign, text) = match text.strip_prefix('-') {
+        Some(text) => (-1.0, text),
+        None => (1.0, text),
+    };
+    let (digits, exponent) = text.trim_start_matches("0x").split_once('p').expect("a p");
+    let digits: String = digits.split('.').collect();
+    let integer = u64::from_str_radix(&digits, 16).expect("digits") as f64;
+    let exponent: i32 = exponent.parse().expect("an exponent");
+    sign * integer * 2.0_f64.powi(exponent - 4 * (digits.len() as i32 - 1))
+}
