@@ -51,10 +51,16 @@ pub(super) fn straighten(function: Vec<Written>) -> Vec<Written> {
     blocks.into_iter().flatten().collect()
 }
 
+/// The label of a block; what stands before a function's first has none.
+fn label(block: &[Written]) -> Option<u32> {
+    let first = block.first().filter(|it| it.opcode == op::LABEL)?;
+    Some(first.operands[0])
+}
+
 /// The label of a block that heads a loop.
 fn header(block: &[Written]) -> Option<u32> {
     let heads = block.iter().any(|it| it.opcode == op::LOOP_MERGE);
-    heads.then(|| block[0].operands[0])
+    label(block).filter(|_| heads)
 }
 
 /// A loop as rust-gpu writes it: the labels of its blocks.
@@ -74,10 +80,7 @@ impl Loop {
         let index: HashMap<u32, usize> = blocks
             .iter()
             .enumerate()
-            .filter_map(|(index, block)| match block.first() {
-                Some(it) if it.opcode == op::LABEL => Some((it.operands[0], index)),
-                _ => None,
-            })
+            .filter_map(|(index, block)| Some((label(block)?, index)))
             .collect();
         let block = |label: &u32| index.get(label).map(|index| &blocks[*index][..]);
         let [.., merge, goes] = block(&header)? else {
@@ -135,10 +138,6 @@ impl Loop {
     }
 
     fn straighten(&self, blocks: &mut Vec<Vec<Written>>) {
-        let label = |block: &Vec<Written>| match block.first() {
-            Some(it) if it.opcode == op::LABEL => Some(it.operands[0]),
-            _ => None,
-        };
         if self.skip != self.test {
             blocks.retain(|block| label(block) != Some(self.skip));
         }
