@@ -59,6 +59,7 @@ enum Place {
 /// # Errors
 ///
 /// [`Error::Output`] if it cannot be created.
+#[cfg(feature = "lab")]
 pub fn create_folder(folder: &Path) -> Result<()> {
     std::fs::create_dir_all(folder).map_err(|error| Error::Output {
         path: folder.into(),
