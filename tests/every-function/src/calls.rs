@@ -519,7 +519,7 @@ pub const CALLS: &[Call] = &[
         ))
     }),
     Call::new("spherule::choose::bound", |s| {
-        seen(spherule::choose::bound(&s.draw(), s.draw()))
+        seen(spherule::choose::bound(&s.draw(), s.draw(), s.draw()))
     }),
     Call::new("spherule::choose::choose", |s| {
         seen(spherule::choose::choose(&s.draw(), s.draw(), s.draw()))

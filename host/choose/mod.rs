@@ -23,18 +23,34 @@
 //! - `double`: as `robust`, with u = 2⁻⁵³ and an exact o.
 //! - `certified`: half a unit in the last place of t.
 //!
+//! Where two surfaces meet at an angle θ between their normals, the errors of both move the curve.
+//! Across the image, t of a surface with normal n changes by t n/(d·n) an angle, up to what all
+//! surfaces have in common. So the curve shifts by (δt₁ + δt₂)/t over |n₁/(d·n₁) − n₂/(d·n₂)|,
+//! which is |n₁ − n₂| at least; and sin α times it is sin θ at least where θ is below a right
+//! angle, else 1. With the shift above for each, that makes (s₁ + s₂)/sin θ, or s₁ + s₂. The radii
+//! and the distance D of the centres give θ: 2 r₁ r₂ cos θ = r₁² + r₂² − D². Where the angle is so
+//! small that the curvature counts, or where one sphere is inside of the other and all but touches
+//! it, the errors decide in a band around the circle: |P − C₂|² − r₂² is linear in the height x of
+//! a point P of the first sphere over the plane of the circle, 2D x, so that the surfaces are
+//! t(s₁ + s₂) apart at x = t(s₁ + s₂) r₂/D (`meeting.rs`).
+//!
 //! Rays that start on surfaces are not in the bound: what an error of theirs moves is light, or a
 //! shadow, by as little.
 
-use glam::DVec3;
-use rayon::prelude::*;
-use spherule_kernel::{Rung, Sphere};
+mod meeting;
+mod neighbours;
+mod sight;
 
+use spherule_kernel::Rung;
+
+use self::meeting::View;
 use crate::scene::Scene;
-use crate::scene::world::GRAIN;
 
 /// The default tolerance, in pixels.
 pub const DEFAULT_TOLERANCE: f64 = 0.1;
+
+/// Where surfaces meet, shifts below this share of the tolerance are not told apart.
+const RESOLUTION: f64 = 0.5;
 
 /// A rung, and why it was chosen.
 #[derive(Clone, Debug, PartialEq)]
@@ -66,7 +82,7 @@ fn cheap_rungs(has_f64: bool) -> &'static [Rung] {
 pub fn choose(scene: &Scene, tolerance: f64, has_f64: bool) -> Choice {
     let mut cheaper = None;
     for rung in cheap_rungs(has_f64) {
-        let bound = bound(scene, *rung);
+        let bound = bound(scene, *rung, tolerance);
         if bound <= tolerance {
             return Choice {
                 rung: *rung,
@@ -77,7 +93,7 @@ pub fn choose(scene: &Scene, tolerance: f64, has_f64: bool) -> Choice {
         }
         cheaper = Some((*rung, bound));
     }
-    let bound = bound(scene, Rung::Certified);
+    let bound = bound(scene, Rung::Certified, tolerance);
     Choice {
         rung: Rung::Certified,
         bound,
@@ -87,107 +103,36 @@ pub fn choose(scene: &Scene, tolerance: f64, has_f64: bool) -> Choice {
 }
 
 /// The most pixels by which the rung's errors may move anything in the scene's image, while the
-/// shutter is open.
+/// shutter is open. Of several spheres it is at least half of `tolerance`, in pixels: where
+/// surfaces meet, what is below is not searched for. Once one sphere is beyond the tolerance,
+/// where spheres meet is not asked at all.
 #[must_use]
-pub fn bound(scene: &Scene, rung: Rung) -> f64 {
-    let view = scene.view_or_framed();
-    let eye = view.eye.as_dvec3();
-    let pixel = 2.0 * (0.5 * view.vertical_fov.to_radians()).tan() / f64::from(scene.height);
-    let (open, close) = scene.lens.shutter;
-    let world = &scene.world;
-    world
-        .spheres
-        .par_iter()
-        .enumerate()
-        .with_min_len(GRAIN)
-        .map(|(index, sphere)| {
-            let velocity = world
-                .velocities
-                .get(index)
-                .map_or(DVec3::ZERO, |velocity| velocity.as_dvec3());
-            let times = [open, close].map(|time| velocity * f64::from(time));
-            shift(rung, &Sight::of(eye, sphere, times)) / pixel
-        })
-        .reduce(|| 0.0, f64::max)
-}
-
-/// Where a sphere is seen from, while it moves.
-struct Sight {
-    radius: f64,
-    /// The largest distance of the eye from the sphere's centre.
-    farthest: f64,
-    /// The smallest distance.
-    nearest: f64,
-    /// The smallest |o·o − r²|.
-    c: f64,
-    /// The largest coordinate that is rounded on the way to o.
-    coordinate: f64,
-}
-
-impl Sight {
-    /// Of a sphere that moves by `from` and by `to` from where it is, and in a line between.
-    fn of(eye: DVec3, sphere: &Sphere, [from, to]: [DVec3; 2]) -> Self {
-        let center = sphere.center().as_dvec3();
-        let (first, way) = (eye - center - from, from - to);
-        let along = -first.dot(way) / way.length_squared();
-        // NaN for a sphere that rests.
-        let along = if along.is_nan() {
-            0.0
-        } else {
-            along.clamp(0.0, 1.0)
-        };
-        let nearest = (first + way * along).length();
-        let farthest = first.length().max((first + way).length());
-        let radius = f64::from(sphere.radius());
-        let c = if (nearest..=farthest).contains(&radius) && way != DVec3::ZERO {
-            0.0
-        } else {
-            let of = |o: f64| (o * o - radius * radius).abs();
-            of(nearest).min(of(farthest))
-        };
-        let moved = center.abs() + from.abs().max(to.abs()) * 2.0;
-        Self {
-            radius,
-            farthest,
-            nearest,
-            c,
-            coordinate: eye.abs().max(moved).max_element(),
-        }
+pub fn bound(scene: &Scene, rung: Rung, tolerance: f64) -> f64 {
+    let camera = scene.view_or_framed();
+    let pixel = 2.0 * (0.5 * camera.vertical_fov.to_radians()).tan() / f64::from(scene.height);
+    let eye = camera.eye.as_dvec3();
+    let view = View { scene, eye, rung };
+    let count = scene.world.spheres.len();
+    let (of_one, around) = view.largest_shift_on_one();
+    let within = tolerance * pixel;
+    if count < 2 || of_one.is_nan() || of_one > within {
+        return of_one / pixel;
     }
-}
-
-/// The largest shift, as an angle, that the rung's error can cause on this sphere.
-fn shift(rung: Rung, sight: &Sight) -> f64 {
-    let single = f64::from(f32::EPSILON) / 2.0;
-    let &Sight {
-        radius: r,
-        farthest: o,
-        c,
-        ..
-    } = sight;
-    let (oo, rr) = (o * o, r * r);
-    let of_t = |u: f64| u * ((5.0 * oo + rr) / c + 1.0 + (29.0 * o + 5.0 * r) / c.sqrt());
-    let of_foot = |u: f64| 17.0 * u;
-    let of_difference = single * sight.coordinate / sight.nearest;
-    match rung {
-        Rung::Textbook => {
-            let of_t = 8.0 * single * (oo + rr) * (o + r) / (c * c.sqrt());
-            of_t + of_foot(single) + of_difference + 8.0 * single * o / r
-        }
-        Rung::Robust => of_t(single) + of_foot(single) + of_difference,
-        Rung::Double => of_t(f64::EPSILON / 2.0) + single,
-        Rung::Compensated => of_t(single * single) + single,
-        Rung::Certified => single,
-    }
+    let floor = within * RESOLUTION;
+    of_one
+        .max(floor)
+        .max(view.largest_shift_between(of_one, floor, &around))
+        / pixel
 }
 
 #[cfg(test)]
 mod tests {
+    use super::sight::Sight;
     use super::*;
     use crate::scene::{View, World};
-    use glam::Vec3;
+    use glam::{DVec3, Vec3};
     use spherule_kernel::precision::{Precision, Robust};
-    use spherule_kernel::{Hit, Material, Ray};
+    use spherule_kernel::{Hit, Material, Ray, Sphere};
 
     use crate::random::Random;
 
@@ -232,7 +177,7 @@ mod tests {
     #[test]
     fn a_far_small_sphere_is_beyond_the_textbook() {
         let marble = scene(Sphere::new(Vec3::new(0.0, 0.0, -1e4), 0.5), Vec3::ZERO);
-        assert!(bound(&marble, Rung::Textbook) > DEFAULT_TOLERANCE);
+        assert!(bound(&marble, Rung::Textbook, DEFAULT_TOLERANCE) > DEFAULT_TOLERANCE);
         assert_eq!(choose(&marble, DEFAULT_TOLERANCE, false).rung, Rung::Robust);
     }
 
@@ -259,7 +204,7 @@ mod tests {
             let eye = center + up * (radius + height);
             let still = [DVec3::ZERO; 2];
             let sight = Sight::of(eye.as_dvec3(), &sphere, still);
-            let bound = shift(Rung::Robust, &sight);
+            let bound = sight.shift(Rung::Robust);
             let o = eye.as_dvec3() - center.as_dvec3();
             for _ in 0..400 {
                 // More of them graze the sphere than chance would have.
