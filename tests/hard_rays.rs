@@ -1,6 +1,6 @@
 //! `spherule check --export`, and the two programs that score answers: docs/hard-rays.md.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// What a program prints; it must succeed.
@@ -11,12 +11,33 @@ fn printed(command: &mut Command) -> String {
     String::from_utf8(output.stdout).expect("text")
 }
 
-/// The numbers of the last line: rays, false hits, missed hits, nearest floats, hits, worst ulp.
-fn totals(table: &str) -> Vec<u64> {
-    let last = table.lines().last().expect("a line");
-    let numbers = last.strip_prefix("all").expect("the line of all rays");
+/// The numbers of a sum's line: rays, false hits, missed hits, nearest floats, hits, worst ulp.
+fn sums(table: &str, of: &str) -> Vec<u64> {
+    let mut lines = table.lines().rev();
+    let numbers = lines.find_map(|line| line.strip_prefix(of)).expect(table);
     let numbers = numbers.split_whitespace().map(str::parse);
     numbers.collect::<Result<_, _>>().expect("numbers")
+}
+
+/// The folder of the scorers.
+fn sources() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("benches/hard-rays")
+}
+
+/// The scorer in C, compiled into a folder.
+fn scorer_in(folder: &Path) -> PathBuf {
+    let scorer = folder.join("score");
+    printed(
+        Command::new("cc")
+            .args(["-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic", "-o"])
+            .arg(&scorer)
+            .arg(sources().join("score.c")),
+    );
+    scorer
+}
+
+fn has_python() -> bool {
+    Command::new("python3").arg("--version").output().is_ok()
 }
 
 #[test]
@@ -30,32 +51,66 @@ fn the_scorers_agree_on_every_rung() {
             .args(["check", "--device", "cpu", "--rays", "300", "--export"])
             .arg(folder.path()),
     );
-    let sources = Path::new(env!("CARGO_MANIFEST_DIR")).join("benches/hard-rays");
-    let scorer = of("score");
-    printed(
-        Command::new("cc")
-            .args(["-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic", "-o"])
-            .arg(&scorer)
-            .arg(sources.join("score.c")),
-    );
-    let has_python = Command::new("python3").arg("--version").output().is_ok();
+    let scorer = scorer_in(folder.path());
     for (rung, is_right) in [("textbook", false), ("robust", false), ("certified", true)] {
         let answers = of(&format!("answers-{rung}.txt"));
         let mut score = Command::new(&scorer);
         let table = printed(score.arg(of("hard-rays.txt")).arg(&answers));
-        if has_python {
+        if has_python() {
             let mut score = Command::new("python3");
-            score.arg(sources.join("score.py"));
+            score.arg(sources().join("score.py"));
             let other = printed(score.arg(of("hard-rays.json")).arg(&answers));
             assert_eq!(table, other, "{rung}");
         }
-        let [rays, false_hits, missed, nearest, hits, worst] = totals(&table)[..] else {
+        let [rays, false_hits, missed, nearest, hits, worst] = sums(&table, "all")[..] else {
             panic!("{table}");
         };
+        assert_eq!(sums(&table, "families")[0], 6 * RAYS, "{table}");
         assert!(rays > 6 * RAYS && hits > rays / 4 && hits < rays, "{table}");
         let is_perfect = (false_hits, missed, nearest, worst) == (0, 0, hits, 0);
         assert_eq!(is_perfect, is_right, "{rung}:\n{table}");
     }
+}
+
+/// Rays that were not asked do not count, and a hit without its t has no nearest float.
+#[test]
+fn a_program_may_answer_less() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let of = |name: &str| folder.path().join(name);
+    let spherule = assert_cmd::cargo::cargo_bin("spherule");
+    printed(
+        Command::new(spherule)
+            .args(["check", "--device", "cpu", "--rays", "20", "--export"])
+            .arg(folder.path()),
+    );
+    let scorer = scorer_in(folder.path());
+    let right = std::fs::read_to_string(of("answers-certified.txt")).expect("the file");
+    let score = |answers: &[&str]| {
+        std::fs::write(of("mine.txt"), answers.join("\n")).expect("a file");
+        let mut in_c = Command::new(&scorer);
+        let table = printed(in_c.args([of("hard-rays.txt"), of("mine.txt")]));
+        if has_python() {
+            let mut other = Command::new("python3");
+            other.arg(sources().join("score.py"));
+            let other = printed(other.args([of("hard-rays.json"), of("mine.txt")]));
+            assert_eq!(table, other);
+        }
+        sums(&table, "all")
+    };
+    let full: Vec<&str> = right.lines().collect();
+    let [rays, .., hits, _] = score(&full)[..] else {
+        panic!("no sums");
+    };
+    let without_t: Vec<&str> = full
+        .iter()
+        .map(|answer| if *answer == "miss" { "miss" } else { "hit" })
+        .collect();
+    assert_eq!(score(&without_t), [rays, 0, 0, 0, hits, 0]);
+    let mut fewer = full.clone();
+    for answer in fewer.iter_mut().filter(|answer| **answer == "miss") {
+        *answer = "-";
+    }
+    assert_eq!(score(&fewer), [hits, 0, 0, hits, hits, 0]);
 }
 
 /// Brackets are as narrow as 64-bit floats are, and round to the nearest 32-bit float.

@@ -1,7 +1,10 @@
 /* Scores a program's answers to hard rays: docs/hard-rays.md. C99, and no library but C's.
  *
  * cc -std=c99 -o score score.c
- * ./score hard-rays.txt ANSWERS.txt     a line for each ray: "miss" or t, decimal or hexadecimal
+ * ./score hard-rays.txt ANSWERS.txt     a line for each ray
+ *
+ * An answer is "miss"; t, decimal or hexadecimal; "hit" for a hit without its t; or "-" for a ray
+ * that was not asked, which does not count.
  */
 
 #include <math.h>
@@ -30,6 +33,17 @@ static int64_t place(float t)
     memcpy(&bits, &t, sizeof bits);
     int64_t size = bits & 0x7fffffffu;
     return bits >> 31 ? -size : size;
+}
+
+static void add(struct score *to, const struct score *of)
+{
+    to->rays += of->rays;
+    to->false_hits += of->false_hits;
+    to->missed += of->missed;
+    to->hits += of->hits;
+    to->nearest += of->nearest;
+    if (of->worst > to->worst)
+        to->worst = of->worst;
 }
 
 /* The first bytes of a name that fit, without a part of a character. */
@@ -61,9 +75,9 @@ int main(int count, char **arguments)
     static struct score sets[SETS];
     static char names[SETS][4 * NAME];
     char line[LINE], answer[LINE];
-    struct score all = {0};
+    struct score families = {0}, all = {0};
     long number = 0, answered = 0;
-    int known = 0;
+    int known = 0, first = SETS, last = -1;
     if (count != 3) {
         fprintf(stderr, "usage: %s hard-rays.txt ANSWERS.txt\n", arguments[0]);
         return 2;
@@ -84,6 +98,7 @@ int main(int count, char **arguments)
             shorten(names[set], line + at);
             known = set + 1;
         }
+        (void)sscanf(line, "# families: sets %d to %d", &first, &last);
         if (line[0] == '#')
             continue;
         char *rest = line;
@@ -101,10 +116,12 @@ int main(int count, char **arguments)
         answered++;
         char *end;
         double t = strtod(answer, &end);
-        int is_hit = strcmp(answer, "miss") != 0;
-        if (is_hit && (end == answer || *end))
-            fail(arguments[2], "neither miss nor a number", answered);
-        is_hit = is_hit && isfinite(t);
+        if (!strcmp(answer, "-"))
+            continue;
+        int has_t = strcmp(answer, "miss") != 0 && strcmp(answer, "hit") != 0;
+        if (has_t && (end == answer || *end))
+            fail(arguments[2], "neither miss, hit, - nor a number", answered);
+        int is_hit = has_t ? isfinite(t) : !strcmp(answer, "hit");
         struct score *of = &sets[set];
         of->rays++;
         if (!must_hit) {
@@ -112,9 +129,11 @@ int main(int count, char **arguments)
         } else if (!is_hit) {
             of->missed++;
         } else {
+            of->hits++;
+            if (!has_t)
+                continue;
             int64_t apart = place((float)t) - place((float)right);
             unsigned long error = (unsigned long)(apart < 0 ? -apart : apart);
-            of->hits++;
             of->nearest += error == 0;
             if (error > of->worst)
                 of->worst = error;
@@ -126,14 +145,11 @@ int main(int count, char **arguments)
            "worst ulp");
     for (int set = 0; set < known; set++) {
         print(names[set], &sets[set]);
-        all.rays += sets[set].rays;
-        all.false_hits += sets[set].false_hits;
-        all.missed += sets[set].missed;
-        all.hits += sets[set].hits;
-        all.nearest += sets[set].nearest;
-        if (sets[set].worst > all.worst)
-            all.worst = sets[set].worst;
+        add(&all, &sets[set]);
+        if (set >= first && set <= last)
+            add(&families, &sets[set]);
     }
+    print("families", &families);
     print("all", &all);
     return 0;
 }

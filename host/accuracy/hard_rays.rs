@@ -203,6 +203,10 @@ fn lines(suite: &Suite) -> String {
     for (index, set) in suite.sets.iter().enumerate() {
         let _ = writeln!(text, "# set {index}: {}", set.name);
     }
+    // The families are the last sets.
+    if let Some(first) = suite.sets.iter().position(|set| set.kind == "family") {
+        let _ = writeln!(text, "# families: sets {first} to {}", suite.sets.len() - 1);
+    }
     for (index, set) in suite.sets.iter().enumerate() {
         for ray in &set.rays {
             let (o, d, c) = (&ray.origin, &ray.direction, &ray.center);
