@@ -5,9 +5,8 @@
  * ./formula64 hard-rays.txt > ANSWERS.txt
  */
 
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
+#include "rays.h"
+
 #include <tgmath.h>
 
 #ifndef REAL
@@ -16,29 +15,27 @@
 
 int main(int count, char **arguments)
 {
-    FILE *rays = count == 2 ? fopen(arguments[1], "r") : NULL;
-    if (!rays) {
+    if (count != 2) {
         fprintf(stderr, "usage: %s hard-rays.txt\n", arguments[0]);
         return 2;
     }
-    char line[1024];
-    while (fgets(line, sizeof line, rays)) {
-        if (line[0] == '#')
-            continue;
-        REAL x[12];
-        char *rest = line;
-        (void)strtol(rest, &rest, 10);
-        for (int index = 0; index < 12; index++)
-            x[index] = (REAL)strtod(rest, &rest);
-        REAL o[3] = {x[0] - x[8], x[1] - x[9], x[2] - x[10]}, *d = x + 3, radius = x[11];
-        REAL a = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
-        REAL b = 2 * (o[0] * d[0] + o[1] * d[1] + o[2] * d[2]);
-        REAL c = o[0] * o[0] + o[1] * o[1] + o[2] * o[2] - radius * radius;
+    struct rays rays = rays_open(arguments[1]);
+    struct ray ray;
+    while (rays_next(&rays, &ray)) {
+        REAL a = 0, half_b = 0, c = 0, radius = ray.radius;
+        for (int axis = 0; axis < 3; axis++) {
+            REAL d = ray.direction[axis], o = (REAL)ray.origin[axis] - (REAL)ray.center[axis];
+            a += d * d;
+            half_b += o * d;
+            c += o * o;
+        }
+        c -= radius * radius;
+        REAL b = 2 * half_b;
         REAL discriminant = b * b - 4 * a * c;
         REAL root = sqrt(discriminant);
         REAL near = (-b - root) / (2 * a), far = (-b + root) / (2 * a);
-        REAL t = near >= x[6] ? near : far;
-        if (discriminant >= 0 && t >= x[6] && t < x[7])
+        REAL t = near >= ray.t_min ? near : far;
+        if (discriminant >= 0 && t >= ray.t_min && t < ray.t_max)
             printf("%a\n", (double)t);
         else
             puts("miss");

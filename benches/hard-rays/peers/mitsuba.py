@@ -1,30 +1,23 @@
 #!/usr/bin/env python3
-"""Answers hard rays with Mitsuba 3's `sphere`: pip install mitsuba.
+"""Answers hard rays with the `sphere` of Mitsuba 3.9.1, scalar_rgb: pip install mitsuba==3.9.1
 
-mitsuba.py hard-rays.json [VARIANT] > ANSWERS.txt
+mitsuba.py hard-rays.txt > ANSWERS.txt
 
-A ray of Mitsuba has no beginning but its origin, so that t_min is taken for zero.
+A ray of Mitsuba begins at its origin; one with another t_min than zero is not asked.
 """
 
-import json
-import os
-import sys
+import hard_rays
 
-# Not this file.
-sys.path = [path for path in sys.path if os.path.abspath(path or ".") != os.path.dirname(os.path.abspath(__file__))]
+rays = hard_rays.read(__doc__)
 
 import mitsuba as mi
 
-mi.set_variant(sys.argv[2] if len(sys.argv) > 2 else "scalar_rgb")
+mi.set_variant("scalar_rgb")
 mi.set_log_level(mi.LogLevel.Error)
-with open(sys.argv[1], encoding="utf-8") as file:
-    suite = json.load(file)
-for chosen in suite["sets"]:
-    for ray in chosen["rays"]:
-        origin, direction, center = (
-            [float.fromhex(x) for x in ray[name]] for name in ("origin", "direction", "center")
-        )
-        t_max, radius = float.fromhex(ray["t_max"]), float.fromhex(ray["radius"])
-        scene = mi.load_dict({"type": "scene", "it": {"type": "sphere", "center": center, "radius": radius}})
-        found = scene.ray_intersect(mi.Ray3f(o=origin, d=direction, maxt=t_max, time=0.0, wavelengths=[]))
-        print(float(found.t).hex() if found.is_valid() else "miss")
+for ray in rays:
+    if ray.t_min != 0:
+        print("-")
+        continue
+    scene = mi.load_dict({"type": "scene", "it": {"type": "sphere", "center": ray.center, "radius": ray.radius}})
+    found = scene.ray_intersect(mi.Ray3f(o=ray.origin, d=ray.direction, maxt=ray.t_max, time=0.0, wavelengths=[]))
+    print(float(found.t).hex() if found.is_valid() else "miss")
