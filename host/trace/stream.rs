@@ -8,7 +8,7 @@
 //! Sixteen rays that do go through the tree instead.
 
 use std::arch::x86_64::*;
-use std::cell::RefCell;
+use std::cell::Cell;
 use std::mem::MaybeUninit;
 
 use fearless_simd::SimdMask;
@@ -33,7 +33,8 @@ const MOST_ALONE: usize = 1024;
 const WAITING: usize = 1024;
 
 thread_local! {
-    static SCRATCH: RefCell<Scratch> = RefCell::default();
+    // In a box: it is taken and put back by each call.
+    static SCRATCH: Cell<Option<Box<Scratch>>> = Cell::default();
 }
 
 /// Lists that are reused for the next rays.
@@ -73,10 +74,10 @@ pub(super) fn trace<const ANY: bool>(
     spheres: &[Sphere],
     mut put: impl FnMut(usize, Hit),
 ) {
-    let mut scratch = SCRATCH.take();
     let Some((top, below)) = levels.groups.split_first() else {
         return;
     };
+    let mut scratch = SCRATCH.take().unwrap_or_default();
     for (some, rays) in rays.chunks(LANES).enumerate() {
         let mut put = |index: usize, hit: Hit| put(LANES * some + index, hit);
         let lefts = lefts.get(LANES * some..).unwrap_or_default();
@@ -98,7 +99,7 @@ pub(super) fn trace<const ANY: bool>(
             }
         }
     }
-    SCRATCH.set(scratch);
+    SCRATCH.set(Some(scratch));
 }
 
 /// Finds what one ray hits, in a world of at most two levels. `at_rest` is [`Resting::at_rest`] of
