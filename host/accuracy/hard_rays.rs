@@ -19,7 +19,7 @@ use super::measure::intersect_all;
 use super::oracle::Intersection;
 use crate::device::Device;
 use crate::device::canary::Canary;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::memory;
 use crate::write::Output;
 
@@ -86,26 +86,49 @@ enum Answer {
 ///
 /// # Errors
 ///
-/// [`Error::Output`](crate::Error::Output) for one that cannot be written.
+/// [`Error::Output`] for one that cannot be written.
 fn outputs(folder: &Path, rungs: &[Rung]) -> Result<(Vec<Output>, Vec<Output>)> {
     let of = |name: &str| Output::new(&folder.join(name));
     let files = ["hard-rays.json", "hard-rays.schema.json", "hard-rays.txt"];
-    let answers = rungs
-        .iter()
-        .map(|rung| of(&format!("answers-{}.txt", rung.name())));
+    let answers = rungs.iter().map(|rung| of(&answers_of(*rung)));
     Ok((
         files.into_iter().map(of).collect::<Result<_>>()?,
         answers.collect::<Result<_>>()?,
     ))
 }
 
-/// Writes the files into `folder`, which exists: the hard cases, and `rays` rays of each family,
-/// with what the rungs answer on `device`. Returns how many rays there are.
+/// The file with a rung's answers.
+fn answers_of(rung: Rung) -> String {
+    format!("answers-{}.txt", rung.name())
+}
+
+/// Removes the answers that an earlier export left of this rung.
 ///
 /// # Errors
 ///
-/// [`Error::Output`](crate::Error::Output) for a file that cannot be written,
-/// [`Error::OutOfHostMemory`](crate::Error::OutOfHostMemory) for too many rays, and the device's
+/// [`Error::Output`] if there are some and they cannot be removed.
+fn remove_answers(folder: &Path, rung: Rung) -> Result<()> {
+    let path = folder.join(answers_of(rung));
+    match std::fs::remove_file(&path) {
+        Err(error) if error.kind() != std::io::ErrorKind::NotFound => Err(Error::Output {
+            path,
+            reason: format!(
+                "holds the answers of an earlier export, and cannot be removed: {error}"
+            ),
+            help: "name another folder".into(),
+        }),
+        _ => Ok(()),
+    }
+}
+
+/// Writes the files into `folder`, which exists: the hard cases, and `rays` rays of each family,
+/// with what the rungs answer on `device`. Returns how many rays there are. What an earlier export
+/// left there of rungs that the device cannot keep is removed.
+///
+/// # Errors
+///
+/// [`Error::Output`] for a file that cannot be written,
+/// [`Error::OutOfHostMemory`] for too many rays, and the device's
 /// errors.
 pub fn export(folder: &Path, device: &Device, rays: usize) -> Result<usize> {
     memory::require(
@@ -113,11 +136,13 @@ pub fn export(folder: &Path, device: &Device, rays: usize) -> Result<usize> {
         &format!("writing {rays} rays of each family"),
     )?;
     let canary = Canary::on(device)?;
-    let rungs: Vec<Rung> = Rung::ALL
+    let (rungs, refused): (Vec<_>, Vec<_>) = Rung::ALL
         .into_iter()
-        .filter(|rung| canary.objection(*rung).is_none())
-        .collect();
+        .partition(|rung| canary.objection(*rung).is_none());
     let (files, answers) = outputs(folder, &rungs)?;
+    for rung in refused {
+        remove_answers(folder, rung)?;
+    }
 
     let mut samples = Vec::new();
     let mut sets = Vec::new();
