@@ -7,7 +7,7 @@
 //!
 //! > v i + (P i + (−O i − s ∓ S)),
 //!
-//! - This is computed to within 5u((|P| + |O| + v)|i| + |s|), fused or not, with division off by
+//! - This is computed to within 6u((|P| + |O| + v)|i| + |s|), fused or not, with division off by
 //!   two units in the last place.
 //! - |P| is at most twice the size of the tree's [`Extent`], and v at most twice its sides. L and H
 //!   are its corners.
@@ -19,11 +19,11 @@
 //! The rungs below [`Rung::Compensated`](crate::Rung::Compensated) may find hits where exact
 //! arithmetic has none, and must find the same hits with a tree as without. So each box is widened
 //! by what the rung may be off. With D the distance from O to the farthest corner of the extent:
-//! * [`robust`](crate::precision::robust): 32u D. The foot of its perpendicular is off by 12u|o|.
-//!   An error e = 4u(o·o + r²) in c puts its t off by at most 16u max(|o|, r) where |b| is at least
-//!   |o|/2, or else r is at least 0.86|o|. In that case let s = |q|/|d|. Both roots are within s of
-//!   the origin, so that |p·p − r²| ≤ 3s² + |c| at either; and c/q is off by e/s, which changes p·p
-//!   by at most 4e where s² ≥ e. So a hit is within 8e/r of the sphere.
+//! * [`robust`](crate::precision::robust): 32u D. The foot of its perpendicular is off by 16u|o|.
+//!   An error e = 5u o·o + u r² + u|c| in c puts its t off by at most 16u max(|o|, r) where |b| is
+//!   at least |o|/2, or else r is at least 0.86|o|. In that case let s = |q|/|d|. Both roots are
+//!   within s of the origin, so that |p·p − r²| ≤ 3s² + |c| at either; and c/q is off by e/s, which
+//!   changes p·p by at most 4e where s² ≥ e. So a hit is within 8e/r of the sphere.
 //! * [`textbook`](crate::precision::textbook): √(r² + 24u D²) − r, with r the smallest radius. Its
 //!   hits are on a sphere whose r² is off by 24u D².
 //!

@@ -16,9 +16,10 @@
 //! - A plane is used only if F + x₀ R is at least half as long as its terms would be at a right
 //!   angle, F + x₀ R is at least 30° away from U, and n is at least 30° away from the plane across
 //!   R.
-//! - Then n is off by 17u, and the terms of every direction inside are at most 17 times as long as
-//!   the direction itself, so that rays leave the plane by 51u|o|.
-//! - Together that is 144u o·o of s².
+//! - Then n is off by 29u, of which 12u are a device's quotient and root, and the terms of every
+//!   direction inside are at most 17 times as long as the direction itself, so that rays leave the
+//!   plane by 51u|o|.
+//! - Together that is 168u o·o of s².
 //! - A rung may find a hit that exact arithmetic misses by 24u (o·o + r²), as
 //!   [`slabs`](crate::accel::slabs) says.
 //!

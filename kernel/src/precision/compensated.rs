@@ -211,36 +211,44 @@ impl Quadratic {
         oo * self.a.high
     }
 
-    /// The bound E₂ on the error of Δ that [`super::certified`] states.
+    /// What the error of Δ is a share of: a r² + k·k + |k||o||d|.
     #[inline]
-    fn discriminant_error(&self) -> f32 {
+    fn discriminant_terms(&self) -> f32 {
         let mixed = (self.k_squared * self.size_squared()).sqrt();
-        two_to_minus(38) * (self.a.high * (self.r * self.r) + self.k_squared + mixed)
+        self.a.high * (self.r * self.r) + self.k_squared + mixed
+    }
+
+    /// A bound on the error of Δ where its sign is in doubt.
+    #[inline]
+    fn sign_error(&self) -> f32 {
+        two_to_minus(43) * self.discriminant_terms()
     }
 
     /// Whether Δ is certainly negative.
     #[inline]
     #[must_use]
     pub fn misses_for_certain(&self) -> bool {
-        -self.discriminant.high > self.discriminant_error()
+        -self.discriminant.high > self.sign_error()
     }
 
     /// Whether Δ is certainly positive.
     #[inline]
     #[must_use]
     pub fn meets_for_certain(&self) -> bool {
-        self.discriminant.high > self.discriminant_error()
+        self.discriminant.high > self.sign_error()
     }
 
     /// A bound on the relative error of |q|, where Δ is positive, and of its quotient by a. √Δ is
-    /// off by E₂/√Δ, and b by 16u² |o||d|. Quotient and root are off by 2⁻³⁸ of themselves if the
-    /// device's own are off by 16 units in the last place, the most that the canary lets pass.
+    /// off by E₂/√Δ, where E₂ = 2⁻³⁸ (a r² + k·k + |k||o||d|), and b by 16u² |o||d|. Quotient and
+    /// root are off by up to 2⁻³⁷ of themselves if the device's own are off by 16 units in the last
+    /// place, the most that the canary lets pass: E₂ holds what 2⁻³⁷ for both together does not.
     #[inline]
     #[must_use]
     pub fn size_error(&self) -> f32 {
         let root = self.discriminant.high.max(0.0).sqrt();
         let size = self.b.high.abs() + root;
-        let of_root = self.discriminant_error() / (root * size);
+        let error = two_to_minus(38) * self.discriminant_terms();
+        let of_root = error / (root * size);
         let of_b = self.size_squared().sqrt() * two_to_minus(43) / size;
         of_root + of_b + two_to_minus(37)
     }

@@ -3,8 +3,9 @@
 //!
 //! The errors, with u = 2⁻²⁴, from o = O − C through b/a to the foot f = o − (b/a)d:
 //!
-//! - Each component of f is off by at most 11u|o|, because |(b/a)d| ≤ |o|. So f·f is off by
-//!   22u|f||o| + 121u²o·o + 3u f·f ≤ 16u (f·f + o·o), and r² by u r².
+//! - f is off by at most 15u|o| + u|f|, because |(b/a)d| ≤ |o|, with a quotient off by 2.5 units in
+//!   the last place. So f·f is off by 30u|f||o| + 5u f·f + 226u²o·o ≤ 21u (f·f + o·o), and r² by
+//!   u r².
 //! - A line misses for certain where f·f − r² > 32u (f·f + o·o + r²).
 //! - Where c is certainly positive, a ray with b > 0 and `t_min` ≥ 0 leaves and misses: if b were
 //!   truly negative, it would be so by 8u|o||d| at most, and a hit needs b² ≥ ac.

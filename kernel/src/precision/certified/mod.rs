@@ -13,9 +13,10 @@
 //!
 //!    Without them, three:
 //!    - a filter (`filter.rs`) in f32, for misses;
-//!    - pairs of floats, as in [`super::compensated`]: the sign of Δ is certain where |Δ| > E₂ =
-//!      2⁻³⁸ (a r² + k·k + |k||o||d|), and a root where its error does not reach to the midpoint
-//!      between two floats (`rounding.rs`);
+//!    - pairs of floats, as in [`super::compensated`]: the sign of Δ is certain where |Δ| is more
+//!      than 2⁻⁴³ (a r² + k·k + |k||o||d|), and a root where its error does not reach to the
+//!      midpoint between two floats (`rounding.rs`). Where k cancels, Δ is off by 50u⁴ o·o a more,
+//!      which is too little to change its sign: then k·k is far below a r²;
 //!    - the same with c as a sum without loss, where c may be too close to zero.
 //! 2. All coefficients as sums without loss (`distilled.rs`). Where that does not round a root for
 //!    certain, the midpoint's place on the line does, by the exact sign of the quadratic there.

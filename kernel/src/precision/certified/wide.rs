@@ -24,8 +24,9 @@
 //!   both.
 //! - c is off by 6v (o·o + r²), or by v|c| + 2⁻⁷³ (o·o + r²) where it is the
 //!   [`residual`](crate::precision::double::residual).
-//! - Quotients and the root are right to 2⁻⁴³ together, also where a device's own are those of 32
-//!   bits, because of the Newton step after each.
+//! - Quotients and the root are right to 2⁻⁴³ together, also where a device's own begin with 24
+//!   bits, off by 3u, because of the Newton step after each. The canary refuses devices that are
+//!   not.
 //!
 //! Together they bound the error of a root. A root is certain if both ends of its bounds round to
 //! the same 32-bit float; one in 2¹⁸ or so is not.
