@@ -8,7 +8,9 @@ use glam::{UVec2, Vec2, Vec3};
 #[cfg(target_arch = "spirv")]
 use spirv_std::num_traits::Float as _;
 
+use crate::arithmetic::arctangent::arctangent;
 use crate::arithmetic::elements::{Bisection, read};
+use crate::arithmetic::turn::turn;
 use crate::effects::Effects;
 use crate::material::microfacet::ALBEDO_LEN;
 
@@ -75,9 +77,17 @@ impl Sky {
     /// nadir at 1. Near both, the cosine of the angle from the axis would lose its digits.
     #[inline]
     fn place_of(&self, direction: Vec3) -> Vec2 {
-        let around = 0.5 + direction.x.atan2(-direction.z) / TAU - self.environment_turn;
         let level = (direction.x * direction.x + direction.z * direction.z).sqrt();
-        Vec2::new(around - around.floor(), level.atan2(direction.y) / PI)
+        let mut around = 0.5 - self.environment_turn;
+        if level > 0.0 {
+            let turned = arctangent(direction.x.abs(), -direction.z) / TAU;
+            around += if direction.x < 0.0 { -turned } else { turned };
+        }
+        around -= around as i32 as f32;
+        if around < 0.0 {
+            around += 1.0;
+        }
+        Vec2::new(around, arctangent(level, direction.y) / PI)
     }
 
     fn texel_at(&self, direction: Vec3) -> UVec2 {
@@ -93,17 +103,13 @@ impl Sky {
     fn interpolated(&self, direction: Vec3, texels: &[f32]) -> Vec3 {
         let (size, place) = (self.environment_size, self.place_of(direction));
         let (width, height) = (size.x.max(1), size.y.max(1));
-        let x = (place.x * width as f32 - 0.5).max(-0.5);
+        // The middle of the texel before is at this whole number, or left of the first.
+        let x = (place.x * width as f32 + 0.5).max(0.5);
         let y = (place.y * height as f32 - 0.5).clamp(0.0, (height - 1) as f32);
-        let (left, top) = (x.floor(), y.floor());
-        let (across, down) = (x - left, y - top);
-        let before = if left < 0.0 {
-            width - 1
-        } else {
-            (left as u32).min(width - 1)
-        };
-        let after = if before + 1 < width { before + 1 } else { 0 };
-        let above = (top as u32).min(height - 1);
+        let (left, above) = ((x as u32).min(width), (y as u32).min(height - 1));
+        let (across, down) = (x - left as f32, y - above as f32);
+        let before = if left == 0 { width - 1 } else { left - 1 };
+        let after = if left < width { left } else { 0 };
         let below = (above + 1).min(height - 1);
         let texel = |x: u32, y: u32| self.texel(UVec2::new(x, y), texels);
         let upper = texel(before, above) * (1.0 - across) + texel(after, above) * across;
@@ -146,10 +152,12 @@ impl Sky {
         let size = self.environment_size;
         let row = share(tables, self.row_table(), texel.y);
         let column = share(tables, self.columns_of(texel.y), texel.x);
-        // The solid angle of the texel, without the difference of two cosines.
-        let half = 0.5 * PI / size.y as f32;
-        let middle = half * (2.0 * texel.y as f32 + 1.0);
-        let solid = 2.0 * middle.sin() * half.sin() * TAU / size.x as f32;
+        // The solid angle of the texel, without the difference of two cosines. Rows below the
+        // middle are as those above, where the sine keeps its digits.
+        let half = 0.25 / size.y as f32;
+        let from_end = texel.y.min(size.y.wrapping_sub(1).wrapping_sub(texel.y));
+        let middle = half * (2.0 * from_end as f32 + 1.0);
+        let solid = 2.0 * turn(middle).y * turn(half).y * TAU / size.x as f32;
         row * column / solid
     }
 
@@ -170,15 +178,13 @@ impl Sky {
         let texel = UVec2::new(column, row);
         // Uniform in the solid angle of the texel: the squares of sine and cosine of half the angle
         // from the zenith keep their digits near both ends.
-        let half = 0.5 * PI / size.y as f32;
-        let (above, below) = (half * row as f32, half * (row as f32 + 1.0));
-        let between = |above: f32, below: f32| above + (below - above) * v;
-        let sine = between(above.sin() * above.sin(), below.sin() * below.sin());
-        let cosine = between(above.cos() * above.cos(), below.cos() * below.cos());
+        let half = 0.25 / size.y as f32;
+        let (above, below) = (turn(half * row as f32), turn(half * (row as f32 + 1.0)));
+        let squares = (above * above).lerp(below * below, v);
+        let (cosine, sine) = (squares.x, squares.y);
         let (y, r) = (cosine - sine, 2.0 * (sine * cosine).max(0.0).sqrt());
-        let turned = (column as f32 + h) / size.x as f32 - 0.5 + self.environment_turn;
-        let around = TAU * turned;
-        let direction = Vec3::new(r * around.sin(), y, -r * around.cos());
+        let around = turn((column as f32 + h) / size.x as f32 - 0.5 + self.environment_turn);
+        let direction = Vec3::new(r * around.y, y, -r * around.x);
         (
             direction,
             self.density_in(texel, tables),
