@@ -1,18 +1,18 @@
 //! What a rung's errors move where two spheres meet, or all but meet. [`super`] derives the bound.
 
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_PI_2, PI};
 
 use glam::DVec3;
 use rayon::prelude::*;
 use spherule_kernel::Rung;
 
-use super::neighbours::{self, Neighbours};
+use super::neighbours::{self, MOST_TESTS, Neighbours};
 use super::sight::{Sight, distances};
 use crate::scene::Scene;
 use crate::scene::world::{GRAIN, bits_of};
 
-/// More spheres around the eye than this are not tested against all others.
-const MOST_AROUND: usize = 64;
+/// Where one sphere's shift is a larger angle than this, nothing is said of two.
+const LARGEST: f64 = 0.1;
 /// Spheres are looked for at least at this 1 − cos θ.
 const SLANT: f64 = 1e-3;
 
@@ -30,6 +30,8 @@ pub(super) struct View<'a> {
     pub(super) scene: &'a Scene,
     pub(super) eye: DVec3,
     pub(super) rung: Rung,
+    /// The times of the image.
+    pub(super) shutter: [f64; 2],
 }
 
 impl View<'_> {
@@ -42,14 +44,12 @@ impl View<'_> {
 
     /// How the eye sees the sphere of this index.
     pub(super) fn sight(&self, index: usize) -> Sight {
-        let (open, close) = self.scene.lens.shutter;
-        let times = [open, close].map(|time| self.velocity(index) * f64::from(time));
+        let times = self.shutter.map(|time| self.velocity(index) * time);
         Sight::of(self.eye, &self.scene.world.spheres[index], times)
     }
 
     fn seen(&self, index: usize) -> Seen {
-        let (open, close) = self.scene.lens.shutter;
-        let (open, close) = (f64::from(open), f64::from(close));
+        let [open, close] = self.shutter;
         let velocity = self.velocity(index);
         let sight = self.sight(index);
         let center = self.scene.world.spheres[index].center().as_dvec3();
@@ -69,7 +69,7 @@ impl View<'_> {
             .with_min_len(GRAIN)
             .fold(none, |(largest, mut around), index| {
                 let sight = self.sight(index);
-                if sight.is_around_the_eye() && around.len() <= MOST_AROUND {
+                if sight.is_around_the_eye() {
                     around.push(index);
                 }
                 (largest.max(sight.shift(self.rung)), around)
@@ -84,10 +84,10 @@ impl View<'_> {
     /// found. `largest` is the largest shift on any one sphere; `around` are the spheres around the
     /// eye.
     pub(super) fn largest_shift_between(&self, largest: f64, floor: f64, around: &[usize]) -> f64 {
-        if around.len() > MOST_AROUND {
+        let count = self.scene.world.spheres.len();
+        if largest > LARGEST || around.len().saturating_mul(count) > MOST_TESTS {
             return f64::INFINITY;
         }
-        let count = self.scene.world.spheres.len();
         let between = |one: usize, other: usize| {
             if one == other || self.are_the_same(one, other) {
                 0.0
@@ -95,12 +95,17 @@ impl View<'_> {
                 between(&self.seen(one), &self.seen(other))
             }
         };
-        // sin θ below which two shifts together are beyond the floor.
-        let sine = (2.0 * largest / floor).min(1.0);
-        let slant = 1.0 - (1.0 - sine * sine).sqrt();
+        // sin θ below which two shifts together are beyond the floor: at any angle if they are.
+        let sine = 2.0 * largest / floor;
+        let slant = if sine < 1.0 {
+            1.0 - (1.0 - sine * sine).sqrt()
+        } else {
+            2.0
+        };
         let spheres = Bodies {
             view: self,
             largest,
+            floor,
         };
         let of_most = Neighbours::of(&spheres, slant.max(SLANT))
             .and_then(|neighbours| neighbours.largest(between));
@@ -133,6 +138,8 @@ struct Bodies<'a> {
     view: &'a View<'a>,
     /// The largest shift on any one sphere.
     largest: f64,
+    /// Shifts below this need not be found.
+    floor: f64,
 }
 
 impl neighbours::Bodies for Bodies<'_> {
@@ -146,8 +153,8 @@ impl neighbours::Bodies for Bodies<'_> {
         if world.velocities.is_empty() {
             center
         } else {
-            let (open, close) = self.view.scene.lens.shutter;
-            center + self.view.velocity(index) * (0.5 * (f64::from(open) + f64::from(close)))
+            let [open, close] = self.view.shutter;
+            center + self.view.velocity(index) * (0.5 * (open + close))
         }
     }
 
@@ -155,11 +162,25 @@ impl neighbours::Bodies for Bodies<'_> {
         f64::from(self.view.scene.world.spheres[index].radius()).abs()
     }
 
-    fn margin(&self, index: usize) -> f64 {
-        let (open, close) = self.view.scene.lens.shutter;
-        let motion = self.view.velocity(index).length() * f64::from(close - open).abs();
-        let far = (self.center(index) - self.view.eye).abs().element_sum() + motion;
-        motion + 2.0 * self.largest * (far + self.radius(index))
+    fn motion(&self, index: usize) -> f64 {
+        if self.view.scene.world.velocities.is_empty() {
+            return 0.0;
+        }
+        let [open, close] = self.view.shutter;
+        self.view.velocity(index).length() * (0.5 * (close - open).abs())
+    }
+
+    fn thickness(&self, index: usize) -> f64 {
+        let to_center = (self.center(index) - self.view.eye).abs().element_sum();
+        2.0 * self.largest * (to_center + self.motion(index) + self.radius(index))
+    }
+
+    /// Whether all of the sphere's image is smaller than what need not be found.
+    fn is_speck(&self, index: usize) -> bool {
+        let radius = self.radius(index);
+        let to_center = self.center(index).distance(self.view.eye);
+        let nearest = to_center - self.motion(index) - radius;
+        PI * radius < self.floor * nearest
     }
 }
 
@@ -208,9 +229,15 @@ fn between(one: &Seen, other: &Seen) -> f64 {
     let sine = angle(plane).sin();
     let stretch = arc * sine * d * s / band;
     let slant = d * sine / l;
+    let mut shift = arc * s / nearest;
     if plane.abs() < d * s && stretch <= 2.0 {
-        shifts * stretch.max(1.0) / slant
+        shift = shift.min(shifts * stretch.max(1.0) / slant);
+    }
+    // The worst moment of a motion may be beside the one that touches most. At no moment of some
+    // thousand pairs was the shift more than 1.62 times as large.
+    if one.half_way == other.half_way {
+        shift
     } else {
-        arc * s / nearest
+        2.0 * shift
     }
 }

@@ -16,12 +16,17 @@
 //!   and u|c|. q = |b| + √Δ is off by 4u|o| from b = o·d. Δ = r² − f·f is off by
 //!   E = 34u r|o| + 6u r² ([`bounds`](spherule_kernel::cull::bounds)), and √Δ by E/2√Δ. But
 //!   sin α = √Δ/r, so that what is seen of that is at most √2 E/2r|q|, below
-//!   u(25|o| + 5r)/√|c|. The silhouette shifts by the error of the foot, 17u|o|, and by that of
-//!   o = O − C, u·max(|O|, |C|), seen at distance |o|.
+//!   u(25|o| + 5r)/√|c|. The silhouette shifts by the error of the foot, 17u|o|.
 //! - `textbook`: its nearer root is a difference: t is off by 8u (o·o + r²)/√|c|, and not below
 //!   |c|/(|o| + r). Its discriminant is off by 16u o·o, which shifts the silhouette by 8u o·o / r.
 //! - `double`: as `robust`, with u = 2⁻⁵³ and an exact o.
 //! - `certified`: half a unit in the last place of t.
+//!
+//! The centre of a sphere that moves is rounded on every rung: C + v t is off by two u of its
+//! largest coordinate, seen at the distance of its surface.
+//!
+//! Away from the middle of the image an angle is more pixels: at the angle β from it 1/cos² β times
+//! as many. The bound is that of the corners.
 //!
 //! Where two surfaces meet at an angle θ between their normals, the errors of both move the curve.
 //! Across the image, t of a surface with normal n changes by t n/(d·n) an angle, up to what all
@@ -108,10 +113,32 @@ pub fn choose(scene: &Scene, tolerance: f64, has_f64: bool) -> Choice {
 /// where spheres meet is not asked at all.
 #[must_use]
 pub fn bound(scene: &Scene, rung: Rung, tolerance: f64) -> f64 {
+    let [open, close] = <[f32; 2]>::from(scene.lens.shutter).map(f64::from);
+    let within_shutter = bound_between(scene, rung, tolerance, [open, close]);
+    // Images of one ray a pixel show the time zero.
+    let is_shown = scene.world.velocities.is_empty() || (open..=close).contains(&0.0);
+    if is_shown {
+        within_shutter
+    } else {
+        within_shutter.max(bound_between(scene, rung, tolerance, [0.0; 2]))
+    }
+}
+
+/// The bound for the times of a shutter.
+fn bound_between(scene: &Scene, rung: Rung, tolerance: f64, shutter: [f64; 2]) -> f64 {
     let camera = scene.view_or_framed();
-    let pixel = 2.0 * (0.5 * camera.vertical_fov.to_radians()).tan() / f64::from(scene.height);
+    let (width, height) = (f64::from(scene.width), f64::from(scene.height));
+    let up = (0.5 * camera.vertical_fov.to_radians()).tan();
+    let across = up * width / height;
+    // The angle of a pixel in a corner: the tangent of a small angle there grows by 1/cos² β.
+    let pixel = 2.0 * up / height / (1.0 + up * up + across * across);
     let eye = camera.eye.as_dvec3();
-    let view = View { scene, eye, rung };
+    let view = View {
+        scene,
+        eye,
+        rung,
+        shutter,
+    };
     let count = scene.world.spheres.len();
     let (of_one, around) = view.largest_shift_on_one();
     let within = tolerance * pixel;
@@ -237,27 +264,86 @@ mod tests {
     /// A sphere that is far at time 0, and all but touches the eye while the shutter is open.
     #[test]
     fn the_bound_is_that_of_the_nearest_moment() {
-        let radius = 1000.0;
-        let mut passing = scene(
-            Sphere::new(Vec3::new(0.0, -2.0 * radius, 0.0), radius),
-            Vec3::ZERO,
-        );
-        assert_eq!(choose(&passing, DEFAULT_TOLERANCE, true).rung, Rung::Robust);
-        passing.world.velocities = vec![Vec3::new(0.0, radius - 0.001, 0.0)];
-        assert_eq!(choose(&passing, DEFAULT_TOLERANCE, true).rung, Rung::Robust);
+        let ball = |x: f32, y: f32| Sphere::new(Vec3::new(x, y, 0.0), 1000.0);
+        let mut passing = scene(ball(0.0, -10.0), Vec3::new(0.0, 1000.2, 0.0));
+        let rung = |scene: &Scene| choose(scene, DEFAULT_TOLERANCE, true).rung;
+        assert_eq!(rung(&passing), Rung::Robust);
+        passing.world.velocities = vec![Vec3::new(0.0, 10.0, 0.0)];
+        assert_eq!(rung(&passing), Rung::Robust);
         passing.lens.shutter = (0.5, 1.0);
-        assert_eq!(choose(&passing, DEFAULT_TOLERANCE, true).rung, Rung::Double);
+        assert_eq!(rung(&passing), Rung::Double);
         // It passes through the eye.
         passing.lens.shutter = (0.5, 1.5);
-        assert_eq!(
-            choose(&passing, DEFAULT_TOLERANCE, true).rung,
-            Rung::Certified
-        );
+        assert_eq!(rung(&passing), Rung::Certified);
         // It crosses the view at a distance, nearest in the middle of its way.
-        passing.world.spheres[0] = Sphere::new(Vec3::new(-1e5, 0.0, -radius - 0.001), radius);
-        passing.world.velocities = vec![Vec3::new(2e5, 0.0, 0.0)];
+        passing.world.spheres[0] = ball(-10.0, 0.0);
+        passing.world.velocities = vec![Vec3::new(20.0, 0.0, 0.0)];
         passing.lens.shutter = (0.0, 1.0);
-        assert_eq!(choose(&passing, DEFAULT_TOLERANCE, true).rung, Rung::Double);
+        assert_eq!(rung(&passing), Rung::Double);
+    }
+
+    /// Images of one ray a pixel show the time zero, whatever the shutter is.
+    #[test]
+    fn the_bound_is_that_of_time_zero_too() {
+        let near = Sphere::new(Vec3::new(0.0, -1e6 - 1.0, 0.0), 1e6);
+        let mut leaving = scene(near, Vec3::ZERO);
+        assert_eq!(choose(&leaving, DEFAULT_TOLERANCE, true).rung, Rung::Double);
+        leaving.world.velocities = vec![Vec3::new(0.0, -1e7, 0.0)];
+        leaving.lens.shutter = (1.0, 1.0);
+        assert_ne!(choose(&leaving, DEFAULT_TOLERANCE, true).rung, Rung::Robust);
+    }
+
+    /// Far from the origin the centre of a sphere that moves is rounded by more than a pixel.
+    #[test]
+    fn no_rung_is_within_the_rounding_of_a_motion() {
+        let center = Vec3::new(-1_003_702.7, -802_962.5, -10.0);
+        let mut far = scene(Sphere::new(center, 1.0), Vec3::ZERO);
+        far.world.velocities = vec![Vec3::new(1_234_567.0, 987_654.0, 0.0)];
+        far.lens.shutter = (0.813, 0.813);
+        assert!(!choose(&far, DEFAULT_TOLERANCE, true).is_within);
+    }
+
+    /// In a corner of a wide image an angle is more pixels than in its middle.
+    #[test]
+    fn the_bound_is_that_of_the_corners() {
+        let mut wide = scene(Sphere::new(Vec3::new(0.0, 0.0, -3.0), 1.0), Vec3::ZERO);
+        let narrow = bound(&wide, Rung::Robust, DEFAULT_TOLERANCE);
+        wide.width *= 10;
+        assert!(bound(&wide, Rung::Robust, DEFAULT_TOLERANCE) > 10.0 * narrow);
+    }
+
+    /// Beads that touch a shell from inside shift by no more than their size.
+    #[test]
+    fn beads_inside_of_a_shell_have_a_bound() {
+        let mut beads = scene(Sphere::new(Vec3::ZERO, 2.0), Vec3::Z * 80.0);
+        let grey = beads.world.material_ids[0];
+        for bead in 0..300 {
+            let turned = bead as f32 * 0.1;
+            let (sine, cosine) = turned.sin_cos();
+            let at = Vec3::new(cosine * cosine, sine * cosine, sine) * 1.9;
+            beads.world.add(Sphere::new(at, 0.1), grey);
+        }
+        let choice = choose(&beads, DEFAULT_TOLERANCE, true);
+        assert!(choice.is_within, "{choice:?}");
+    }
+
+    /// A fast sphere among many that rest, and one that is far from all others.
+    #[test]
+    fn few_odd_spheres_do_not_spoil_the_bound() {
+        let mut world = scene(Sphere::new(Vec3::Z * -50.0, 0.02), Vec3::ZERO);
+        let grey = world.world.material_ids[0];
+        for index in 0..20_000 {
+            let at = Vec3::new((index % 200) as f32, (index / 200) as f32, -60.0);
+            world.world.add(Sphere::new(at, 0.02), grey);
+        }
+        world.world.add(Sphere::new(Vec3::Z * -1e5, 0.02), grey);
+        let choice = choose(&world, DEFAULT_TOLERANCE, true);
+        assert_eq!(choice.rung, Rung::Robust, "{choice:?}");
+        let fast = Sphere::new(Vec3::new(-5.0, 3.3, -20.0), 0.01);
+        world.world.add_moving(fast, grey, Vec3::X * 20.0);
+        world.lens.shutter = (0.0, 1.0);
+        let choice = choose(&world, DEFAULT_TOLERANCE, true);
+        assert_eq!(choice.rung, Rung::Robust, "{choice:?}");
     }
 
     /// If pixels are smaller than the rounding errors of a ray, no rung is within the tolerance,

@@ -1,6 +1,6 @@
 //! [`Neighbours`]: for each sphere, the larger ones whose surfaces it may meet at a small angle.
 
-use std::sync::atomic::{AtomicU32, AtomicU64, Ordering::Relaxed};
+use std::sync::atomic::{AtomicU32, AtomicU64, AtomicUsize, Ordering::Relaxed};
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -9,17 +9,17 @@ use crate::memory;
 use crate::scene::world::GRAIN;
 
 /// So many tests of two spheres are made, for all spheres together.
-const MOST_TESTS: usize = 200_000_000;
-/// And for each sphere at least so many.
-const FEWEST_TESTS: usize = 256;
+pub(super) const MOST_TESTS: usize = 200_000_000;
+/// Spheres with fewer tests are not counted.
+const FEW_TESTS: usize = 64;
 /// The powers of two of radii are from here on.
 const SMALLEST: i32 = -150;
 /// And so many.
 const SIZES: usize = 280;
 /// Cells are so many times as wide as the distance of what is looked for, if that is more.
 const REACHES: f64 = 8.0;
-/// Where few smaller spheres are sought among them, cells are at least this share of the largest
-/// radius.
+/// Cells of the smallest spheres are at least this share of the largest of them. Those of larger
+/// ones are as wide as these, because smaller ones look for them as far away as that.
 const NARROWEST: f64 = 0.25;
 
 /// Spheres that are looked for.
@@ -27,8 +27,12 @@ pub(super) trait Bodies: Sync {
     fn count(&self) -> usize;
     fn center(&self, index: usize) -> DVec3;
     fn radius(&self, index: usize) -> f64;
-    /// How far the surface may be from where these say.
-    fn margin(&self, index: usize) -> f64;
+    /// How far the sphere may move from there.
+    fn motion(&self, index: usize) -> f64;
+    /// How far its surface and that of a sphere next to it may be apart and yet meet.
+    fn thickness(&self, index: usize) -> f64;
+    /// Whether the sphere is too small to be looked for.
+    fn is_speck(&self, index: usize) -> bool;
 
     /// The power of two of the radius, counted from the smallest; `None` for no sphere.
     fn size(&self, index: usize) -> Option<usize> {
@@ -36,7 +40,7 @@ pub(super) trait Bodies: Sync {
         let exponent = (radius.to_bits() >> 52) as usize;
         let size = exponent.wrapping_sub((f64::MAX_EXP - 1 + SMALLEST) as usize);
         let is_one = radius > 0.0 && size < SIZES && self.center(index).is_finite();
-        is_one.then_some(size)
+        (is_one && !self.is_speck(index)).then_some(size)
     }
 }
 
@@ -55,8 +59,6 @@ pub(super) struct Neighbours<'a, B> {
     of_size: [usize; SIZES],
     bodies: &'a B,
     slant: f64,
-    /// For each sphere.
-    most_tests: usize,
 }
 
 /// What is known of the spheres of one size before they are sorted.
@@ -65,7 +67,10 @@ struct Extent {
     count: usize,
     smallest: f64,
     largest: f64,
-    margin: f64,
+    /// The largest motion.
+    motion: f64,
+    /// The sum of what is added to reaches.
+    margins: f64,
 }
 
 impl Extent {
@@ -73,7 +78,8 @@ impl Extent {
         count: 0,
         smallest: f64::INFINITY,
         largest: 0.0,
-        margin: 0.0,
+        motion: 0.0,
+        margins: 0.0,
     };
 
     fn and(self, other: Self) -> Self {
@@ -81,14 +87,18 @@ impl Extent {
             count: self.count + other.count,
             smallest: self.smallest.min(other.smallest),
             largest: self.largest.max(other.largest),
-            margin: self.margin.max(other.margin),
+            motion: self.motion.max(other.motion),
+            margins: self.margins + other.margins,
         }
     }
 }
 
 /// The spheres of one size, sorted by the cells that their centres are in.
 struct Grid {
-    extent: Extent,
+    /// The largest radius.
+    largest: f64,
+    /// The largest motion.
+    motion: f64,
     cells_a_unit: f64,
     /// For each place in the table, where the indices of its spheres end; they begin where those
     /// of the place before end. Cells share a place where their hashes are the same.
@@ -133,7 +143,7 @@ impl Grid {
     }
 
     /// The indices of the spheres of a cell, and perhaps of another one.
-    fn at(&self, cell: [i64; 3]) -> impl ExactSizeIterator<Item = Option<usize>> {
+    fn at(&self, cell: [i64; 3]) -> impl Iterator<Item = Option<usize>> {
         let Cell { place, mark } = self.hash(cell);
         let end = |place: usize| self.ends[place].load(Relaxed) as usize;
         let start = if place == 0 { 0 } else { end(place - 1) };
@@ -160,12 +170,13 @@ impl<'a, B: Bodies> Neighbours<'a, B> {
         let extents = all()
             .fold(none, |mut extents, index| {
                 if let Some(size) = bodies.size(index) {
-                    let radius = bodies.radius(index);
+                    let (radius, motion) = (bodies.radius(index), bodies.motion(index));
                     extents[size] = extents[size].and(Extent {
                         count: 1,
                         smallest: radius,
                         largest: radius,
-                        margin: bodies.margin(index),
+                        motion,
+                        margins: motion + bodies.thickness(index),
                     });
                 }
                 extents
@@ -174,27 +185,22 @@ impl<'a, B: Bodies> Neighbours<'a, B> {
                 one.into_iter().zip(other).map(|(a, b)| a.and(b)).collect()
             });
         let mut grids = Vec::new();
-        // For each size, which grid it is.
         let mut of_size = [usize::MAX; SIZES];
-        let mut smaller = 0;
         for (size, extent) in extents.into_iter().enumerate() {
             if extent.count == 0 {
                 continue;
             }
-            let reach = reach(extent.smallest, extent.largest, slant) + 2.0 * extent.margin;
-            let narrowest = if smaller > extent.count {
-                2.0
-            } else {
-                NARROWEST
-            };
+            let margin = extent.margins / extent.count as f64 + extent.motion;
+            let reach = reach(extent.smallest, extent.largest, slant) + margin;
+            let narrowest = if grids.is_empty() { NARROWEST } else { 2.0 };
             of_size[size] = grids.len();
             grids.push(Grid {
-                extent,
+                largest: extent.largest,
+                motion: extent.motion,
                 cells_a_unit: 1.0 / (REACHES * reach).max(narrowest * extent.largest),
                 ends: zeros(extent.count.next_power_of_two())?,
                 marked: zeros(extent.count)?,
             });
-            smaller += extent.count;
         }
         // Sorted by counting: the ends of places are first their counts, then their beginnings.
         let cell_of = |index: usize| -> Option<(&Grid, Cell)> {
@@ -224,63 +230,174 @@ impl<'a, B: Bodies> Neighbours<'a, B> {
             of_size,
             bodies,
             slant,
-            most_tests: (MOST_TESTS / bodies.count().max(1)).max(FEWEST_TESTS),
         })
     }
 
     /// The largest of what `value` gives for two spheres that may meet at a small angle, the
     /// smaller one first, and zero; `None` where too many are too close.
     pub(super) fn largest(&self, value: impl Fn(usize, usize) -> f64 + Sync) -> Option<f64> {
+        let all_tests = AtomicUsize::new(0);
         (0..self.bodies.count())
             .into_par_iter()
             .with_min_len(GRAIN)
-            .map(|index| match self.bodies.size(index) {
-                Some(size) => self.largest_of(self.of_size[size], index, &value),
-                None => Some(0.0),
+            .map(|index| {
+                let mut largest = 0.0_f64;
+                let mut tests = 0;
+                let are_few = |tests: usize| {
+                    tests <= FEW_TESTS || all_tests.load(Relaxed) + tests <= MOST_TESTS
+                };
+                let are_all = self.visit(index, |other| {
+                    tests += 1;
+                    if let Some(other) = other {
+                        largest = largest.max(value(index, other));
+                    }
+                    are_few(tests)
+                });
+                if tests > FEW_TESTS {
+                    all_tests.fetch_add(tests, Relaxed);
+                }
+                are_all.then_some(largest)
             })
             .try_reduce(|| 0.0, |one, other| Some(one.max(other)))
     }
 
-    /// The same for one sphere and those that are larger, or equal and of a larger index.
-    fn largest_of(
-        &self,
-        number: usize,
-        index: usize,
-        value: impl Fn(usize, usize) -> f64,
-    ) -> Option<f64> {
+    /// Calls `visit` for each sphere that is looked at, until that says no: with the sphere, if it
+    /// is larger, or equal and of a larger index, and within reach. Says whether it never did.
+    fn visit(&self, index: usize, mut visit: impl FnMut(Option<usize>) -> bool) -> bool {
+        let Some(size) = self.bodies.size(index) else {
+            return true;
+        };
         let (center, radius) = (self.bodies.center(index), self.bodies.radius(index));
-        let margin = self.bodies.margin(index);
-        let mut largest = 0.0_f64;
-        let mut tests = 0;
-        for grid in &self.grids[number..] {
-            let margin = margin + grid.extent.margin;
-            let reach_to = |other: f64| reach(radius, other, self.slant) + margin;
-            let reach = DVec3::splat(reach_to(grid.extent.largest));
-            let from = grid.cell(center - reach);
-            let to = grid.cell(center + reach);
-            for z in from[2]..=to[2] {
-                for y in from[1]..=to[1] {
-                    for x in from[0]..=to[0] {
-                        let others = grid.at([x, y, z]);
-                        tests += others.len();
-                        if tests > self.most_tests {
-                            return None;
-                        }
-                        for other in others.flatten() {
-                            let (apart, larger) = (
-                                center.distance_squared(self.bodies.center(other)),
-                                self.bodies.radius(other),
-                            );
-                            if (larger, other) > (radius, index)
-                                && apart <= reach_to(larger).powi(2)
-                            {
-                                largest = largest.max(value(index, other));
-                            }
-                        }
+        let margin = self.bodies.motion(index) + self.bodies.thickness(index);
+        for grid in &self.grids[self.of_size[size]..] {
+            let reach_to = |other: f64| reach(radius, other, self.slant) + margin + grid.motion;
+            let mut look_at = |other: usize| {
+                let apart = center.distance_squared(self.bodies.center(other));
+                let larger = self.bodies.radius(other);
+                let is_near =
+                    (larger, other) > (radius, index) && apart <= reach_to(larger).powi(2);
+                visit(is_near.then_some(other))
+            };
+            let reach = DVec3::splat(reach_to(grid.largest));
+            let (from, to) = (grid.cell(center - reach), grid.cell(center + reach));
+            let along = |axis: usize| (to[axis] as f64 - from[axis] as f64) + 1.0;
+            let goes_on = if along(0) * along(1) * along(2) > grid.marked.len() as f64 {
+                let mut all = grid.marked.iter();
+                all.all(|marked| look_at(marked.load(Relaxed) as u32 as usize))
+            } else {
+                (from[2]..=to[2]).all(|z| {
+                    (from[1]..=to[1]).all(|y| {
+                        (from[0]..=to[0]).all(|x| grid.at([x, y, z]).flatten().all(&mut look_at))
+                    })
+                })
+            };
+            if !goes_on {
+                return false;
+            }
+        }
+        true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Mutex;
+
+    use super::*;
+    use crate::random::Random;
+
+    const THICKNESS: f64 = 1e-3;
+
+    /// Centres, radii, and how far they move.
+    struct Balls(Vec<(DVec3, f64, f64)>);
+
+    impl Bodies for Balls {
+        fn count(&self) -> usize {
+            self.0.len()
+        }
+
+        fn center(&self, index: usize) -> DVec3 {
+            self.0[index].0
+        }
+
+        fn radius(&self, index: usize) -> f64 {
+            self.0[index].1
+        }
+
+        fn motion(&self, index: usize) -> f64 {
+            self.0[index].2
+        }
+
+        fn thickness(&self, _: usize) -> f64 {
+            THICKNESS
+        }
+
+        fn is_speck(&self, _: usize) -> bool {
+            false
+        }
+    }
+
+    /// Every pair within reach is visited, the smaller one first, in worlds of one size and of
+    /// many, sparse and crowded.
+    #[test]
+    fn all_pairs_within_reach_are_visited() {
+        let mut random = Random::new(3);
+        for round in 0..60 {
+            let sizes = [1.0, 1.5, 30.0, 1e6][round % 4];
+            let spread = random.log_within(1.0, 40.0);
+            let offset = random.vec3(-1e3, 1e3).as_dvec3();
+            let slant = f64::from(random.log_within(1e-4, 1.0));
+            let balls = (0..400).map(|index| {
+                let center = offset + random.vec3(-spread, spread).as_dvec3();
+                // One flies through all others.
+                let motion = if round % 3 == 0 && index == 7 {
+                    1e3
+                } else {
+                    0.0
+                };
+                (center, f64::from(random.log_within(1.0, sizes)), motion)
+            });
+            let balls = Balls(balls.collect());
+            let mut expected = Vec::new();
+            for (one, (center, radius, motion)) in balls.0.iter().enumerate() {
+                for (other, (there, larger, moves)) in balls.0.iter().enumerate() {
+                    let within = reach(*radius, *larger, slant) + motion + moves + THICKNESS;
+                    if (larger, other) > (radius, one) && center.distance(*there) < within {
+                        expected.push((one, other));
                     }
                 }
             }
+            let visited = Mutex::new(Vec::new());
+            let neighbours = Neighbours::of(&balls, slant).expect("memory");
+            let largest = neighbours.largest(|one, other| {
+                visited.lock().expect("no panic").push((one, other));
+                (one * 400 + other) as f64
+            });
+            let mut visited = visited.into_inner().expect("no panic");
+            visited.sort_unstable();
+            visited.dedup();
+            let is_missed = |pair: &&(usize, usize)| visited.binary_search(pair).is_err();
+            assert_eq!(expected.iter().find(is_missed), None, "round {round}");
+            let of_last = visited.iter().map(|(one, other)| one * 400 + other).max();
+            assert_eq!(largest, Some(of_last.unwrap_or(0) as f64), "round {round}");
         }
-        Some(largest)
+    }
+
+    #[test]
+    fn too_many_in_one_place_are_too_many() {
+        let balls = Balls(vec![(DVec3::ZERO, 1.0, 0.0); 40_000]);
+        let neighbours = Neighbours::of(&balls, 0.1).expect("memory");
+        assert_eq!(neighbours.largest(|_, _| 0.0), None);
+    }
+
+    #[test]
+    fn odd_spheres_have_no_neighbours() {
+        let odd = [f64::NAN, f64::INFINITY, 0.0, -1.0];
+        let mut balls: Vec<_> = odd.map(|radius| (DVec3::ZERO, radius, 0.0)).into();
+        balls.extend(odd[..2].iter().map(|x| (DVec3::splat(*x), 1.0, 0.0)));
+        balls.push((DVec3::splat(1e300), 1e-30, 0.0));
+        let neighbours = Balls(balls);
+        let neighbours = Neighbours::of(&neighbours, 0.1).expect("memory");
+        assert_eq!(neighbours.largest(|_, _| 1.0), Some(0.0));
     }
 }

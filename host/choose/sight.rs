@@ -12,8 +12,8 @@ pub(super) struct Sight {
     nearest: f64,
     /// The smallest |o·o − r²|.
     c: f64,
-    /// The largest coordinate that is rounded on the way to o.
-    coordinate: f64,
+    /// The largest coordinate that the centre has while it moves; zero if it rests.
+    moved: f64,
 }
 
 impl Sight {
@@ -28,13 +28,17 @@ impl Sight {
             let of = |o: f64| (o * o - radius * radius).abs();
             of(nearest).min(of(farthest))
         };
-        let moved = center.abs() + from.abs().max(to.abs()) * 2.0;
+        let moved = if from == DVec3::ZERO && to == DVec3::ZERO {
+            0.0
+        } else {
+            (center.abs() + from.abs().max(to.abs())).max_element()
+        };
         Self {
             radius,
             farthest,
             nearest,
             c,
-            coordinate: eye.abs().max(moved).max_element(),
+            moved,
         }
     }
 
@@ -65,17 +69,23 @@ impl Sight {
         let (oo, rr) = (o * o, r * r);
         let of_t = |u: f64| u * ((5.0 * oo + rr) / c + 1.0 + (29.0 * o + 5.0 * r) / c.sqrt());
         let of_foot = |u: f64| 17.0 * u;
-        let of_difference = single * self.coordinate / self.nearest;
-        match rung {
+        // |o| − r is c/(|o| + r).
+        let of_motion = if self.moved > 0.0 {
+            4.0 * single * self.moved * (o + r) / c
+        } else {
+            0.0
+        };
+        let of_rung = match rung {
             Rung::Textbook => {
                 let of_t = 8.0 * single * (oo + rr) * (o + r) / (c * c.sqrt());
-                of_t + of_foot(single) + of_difference + 8.0 * single * o / r
+                of_t + of_foot(single) + 8.0 * single * o / r
             }
-            Rung::Robust => of_t(single) + of_foot(single) + of_difference,
+            Rung::Robust => of_t(single) + of_foot(single),
             Rung::Double => of_t(f64::EPSILON / 2.0) + single,
             Rung::Compensated => of_t(single * single) + single,
             Rung::Certified => single,
-        }
+        };
+        of_rung + of_motion
     }
 }
 
