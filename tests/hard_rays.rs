@@ -36,32 +36,38 @@ fn scorer_in(folder: &Path) -> PathBuf {
     scorer
 }
 
-fn has_python() -> bool {
-    Command::new("python3").arg("--version").output().is_ok()
+/// Exports so many rays of each family into a folder.
+fn export(rays: u64, folder: &Path) {
+    let spherule = assert_cmd::cargo::cargo_bin("spherule");
+    printed(
+        Command::new(spherule)
+            .args(["check", "--device", "cpu", "--rays", &rays.to_string()])
+            .arg("--export")
+            .arg(folder),
+    );
+}
+
+/// The table of some answers, which both scorers print alike.
+fn scored(scorer: &Path, folder: &Path, answers: &str) -> String {
+    let of = |name: &str| folder.join(name);
+    let table = printed(Command::new(scorer).args([of("hard-rays.txt"), of(answers)]));
+    if Command::new("python3").arg("--version").output().is_ok() {
+        let mut other = Command::new("python3");
+        other.arg(sources().join("score.py"));
+        let other = printed(other.args([of("hard-rays.json"), of(answers)]));
+        assert_eq!(table, other, "{answers}");
+    }
+    table
 }
 
 #[test]
 fn the_scorers_agree_on_every_rung() {
     const RAYS: u64 = 300;
     let folder = tempfile::tempdir().expect("a folder");
-    let of = |name: &str| folder.path().join(name);
-    let spherule = assert_cmd::cargo::cargo_bin("spherule");
-    printed(
-        Command::new(spherule)
-            .args(["check", "--device", "cpu", "--rays", "300", "--export"])
-            .arg(folder.path()),
-    );
+    export(RAYS, folder.path());
     let scorer = scorer_in(folder.path());
     for (rung, is_right) in [("textbook", false), ("robust", false), ("certified", true)] {
-        let answers = of(&format!("answers-{rung}.txt"));
-        let mut score = Command::new(&scorer);
-        let table = printed(score.arg(of("hard-rays.txt")).arg(&answers));
-        if has_python() {
-            let mut score = Command::new("python3");
-            score.arg(sources().join("score.py"));
-            let other = printed(score.arg(of("hard-rays.json")).arg(&answers));
-            assert_eq!(table, other, "{rung}");
-        }
+        let table = scored(&scorer, folder.path(), &format!("answers-{rung}.txt"));
         let [rays, false_hits, missed, nearest, hits, worst] = sums(&table, "all")[..] else {
             panic!("{table}");
         };
@@ -77,25 +83,12 @@ fn the_scorers_agree_on_every_rung() {
 fn a_program_may_answer_less() {
     let folder = tempfile::tempdir().expect("a folder");
     let of = |name: &str| folder.path().join(name);
-    let spherule = assert_cmd::cargo::cargo_bin("spherule");
-    printed(
-        Command::new(spherule)
-            .args(["check", "--device", "cpu", "--rays", "20", "--export"])
-            .arg(folder.path()),
-    );
+    export(20, folder.path());
     let scorer = scorer_in(folder.path());
     let right = std::fs::read_to_string(of("answers-certified.txt")).expect("the file");
     let score = |answers: &[&str]| {
         std::fs::write(of("mine.txt"), answers.join("\n")).expect("a file");
-        let mut in_c = Command::new(&scorer);
-        let table = printed(in_c.args([of("hard-rays.txt"), of("mine.txt")]));
-        if has_python() {
-            let mut other = Command::new("python3");
-            other.arg(sources().join("score.py"));
-            let other = printed(other.args([of("hard-rays.json"), of("mine.txt")]));
-            assert_eq!(table, other);
-        }
-        sums(&table, "all")
+        sums(&scored(&scorer, folder.path(), "mine.txt"), "all")
     };
     let full: Vec<&str> = right.lines().collect();
     let [rays, .., hits, _] = score(&full)[..] else {

@@ -48,14 +48,24 @@ impl View<'_> {
         Sight::of(self.eye, &self.scene.world.spheres[index], times)
     }
 
-    fn seen(&self, index: usize) -> Seen {
+    /// Where the centre is in the middle of the shutter's time.
+    fn middle(&self, index: usize) -> DVec3 {
         let [open, close] = self.shutter;
-        let velocity = self.velocity(index);
-        let sight = self.sight(index);
         let center = self.scene.world.spheres[index].center().as_dvec3();
+        center + self.velocity(index) * (0.5 * (open + close))
+    }
+
+    /// How the centre moves from there to the end of the shutter's time.
+    fn half_way(&self, index: usize) -> DVec3 {
+        let [open, close] = self.shutter;
+        self.velocity(index) * (0.5 * (close - open))
+    }
+
+    fn seen(&self, index: usize) -> Seen {
+        let sight = self.sight(index);
         Seen {
-            middle: center + velocity * (0.5 * (open + close)),
-            half_way: velocity * (0.5 * (close - open)),
+            middle: self.middle(index),
+            half_way: self.half_way(index),
             shift: sight.shift(self.rung),
             sight,
         }
@@ -148,14 +158,7 @@ impl neighbours::Bodies for Bodies<'_> {
     }
 
     fn center(&self, index: usize) -> DVec3 {
-        let world = &self.view.scene.world;
-        let center = world.spheres[index].center().as_dvec3();
-        if world.velocities.is_empty() {
-            center
-        } else {
-            let [open, close] = self.view.shutter;
-            center + self.view.velocity(index) * (0.5 * (open + close))
-        }
+        self.view.middle(index)
     }
 
     fn radius(&self, index: usize) -> f64 {
@@ -163,11 +166,7 @@ impl neighbours::Bodies for Bodies<'_> {
     }
 
     fn motion(&self, index: usize) -> f64 {
-        if self.view.scene.world.velocities.is_empty() {
-            return 0.0;
-        }
-        let [open, close] = self.view.shutter;
-        self.view.velocity(index).length() * (0.5 * (close - open).abs())
+        self.view.half_way(index).length()
     }
 
     fn thickness(&self, index: usize) -> f64 {

@@ -143,14 +143,16 @@ impl Grid {
     }
 
     /// The indices of the spheres of a cell, and perhaps of another one.
-    fn at(&self, cell: [i64; 3]) -> impl Iterator<Item = Option<usize>> {
+    fn at(&self, cell: [i64; 3]) -> impl Iterator<Item = usize> {
         let Cell { place, mark } = self.hash(cell);
         let end = |place: usize| self.ends[place].load(Relaxed) as usize;
         let start = if place == 0 { 0 } else { end(place - 1) };
-        self.marked[start..end(place)].iter().map(move |marked| {
-            let marked = marked.load(Relaxed);
-            ((marked >> 32) as u32 == mark).then_some(marked as u32 as usize)
-        })
+        self.marked[start..end(place)]
+            .iter()
+            .filter_map(move |marked| {
+                let marked = marked.load(Relaxed);
+                ((marked >> 32) as u32 == mark).then_some(marked as u32 as usize)
+            })
     }
 }
 
@@ -286,9 +288,8 @@ impl<'a, B: Bodies> Neighbours<'a, B> {
                 all.all(|marked| look_at(marked.load(Relaxed) as u32 as usize))
             } else {
                 (from[2]..=to[2]).all(|z| {
-                    (from[1]..=to[1]).all(|y| {
-                        (from[0]..=to[0]).all(|x| grid.at([x, y, z]).flatten().all(&mut look_at))
-                    })
+                    (from[1]..=to[1])
+                        .all(|y| (from[0]..=to[0]).all(|x| grid.at([x, y, z]).all(&mut look_at)))
                 })
             };
             if !goes_on {

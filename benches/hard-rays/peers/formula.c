@@ -15,11 +15,7 @@
 
 int main(int count, char **arguments)
 {
-    if (count != 2) {
-        fprintf(stderr, "usage: %s hard-rays.txt\n", arguments[0]);
-        return 2;
-    }
-    struct rays rays = rays_open(arguments[1]);
+    struct rays rays = rays_of(count, arguments);
     struct ray ray;
     while (rays_next(&rays, &ray)) {
         REAL a = 0, half_b = 0, c = 0, radius = ray.radius;

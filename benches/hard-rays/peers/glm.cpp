@@ -28,11 +28,7 @@ static Vector vector(const float *x) { return Vector(x[0], x[1], x[2]); }
 
 int main(int count, char **arguments)
 {
-    if (count != 2) {
-        fprintf(stderr, "usage: %s hard-rays.txt\n", arguments[0]);
-        return 2;
-    }
-    rays rays = rays_open(arguments[1]);
+    rays rays = rays_of(count, arguments);
     ray ray;
     while (rays_next(&rays, &ray)) {
         const float *d = ray.direction;

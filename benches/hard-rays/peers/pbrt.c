@@ -135,11 +135,7 @@ static int intersect(const struct ray *ray, float *t)
 
 int main(int count, char **arguments)
 {
-    if (count != 2) {
-        fprintf(stderr, "usage: %s hard-rays.txt\n", arguments[0]);
-        return 2;
-    }
-    struct rays rays = rays_open(arguments[1]);
+    struct rays rays = rays_of(count, arguments);
     struct ray ray;
     float t;
     while (rays_next(&rays, &ray)) {

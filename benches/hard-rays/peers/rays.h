@@ -57,6 +57,16 @@ static inline struct rays rays_open(const char *name)
     return rays;
 }
 
+/* Opens the only argument of a program. */
+static inline struct rays rays_of(int count, char **arguments)
+{
+    if (count != 2) {
+        fprintf(stderr, "usage: %s hard-rays.txt\n", arguments[0]);
+        exit(2);
+    }
+    return rays_open(arguments[1]);
+}
+
 /* Reads the next ray; 0 at the end of the file. */
 static inline int rays_next(struct rays *rays, struct ray *ray)
 {
