@@ -609,12 +609,30 @@ impl Gpu {
         bindings: &[Binding<'_>],
         workgroups: [u32; 3],
     ) -> Result<LaunchTime> {
+        self.launch_in_turn(&[(kernel, workgroups)], bindings)
+    }
+
+    /// Runs kernels one after the other, each in so many workgroups and with the same bindings, and
+    /// waits for them. Each sees what those before it wrote.
+    ///
+    /// # Errors
+    ///
+    /// As [`Gpu::launch`].
+    pub(crate) fn launch_in_turn(
+        &self,
+        kernels: &[(&Kernel, [u32; 3])],
+        bindings: &[Binding<'_>],
+    ) -> Result<LaunchTime> {
+        let name = kernels.first().map_or("none", |(kernel, _)| &kernel.name);
+        let during = format!("running the kernel {name}");
         let limit = self.device.limits().max_compute_workgroups_per_dimension;
-        if let Some(asked) = workgroups.iter().find(|count| **count > limit) {
-            return Err(self.over_limit(&kernel.name, "the number of workgroups", *asked, limit));
+        for (kernel, workgroups) in kernels {
+            if let Some(asked) = workgroups.iter().find(|count| **count > limit) {
+                let what = "the number of workgroups";
+                return Err(self.over_limit(&kernel.name, what, *asked, limit));
+            }
+            self.check_owner(kernel.owner, &kernel.name, &during)?;
         }
-        let during = format!("running the kernel {}", kernel.name);
-        self.check_owner(kernel.owner, &kernel.name, &during)?;
         for binding in bindings {
             self.check_owner(binding.owner, binding.label, &during)?;
         }
@@ -625,17 +643,17 @@ impl Gpu {
         let timer = timer.as_deref();
         let started = Instant::now();
         let submission = self.watch.checked(&self.device, &during, || {
-            let group = self.bind_group(kernel, bindings);
-            let mut encoder = self.encoder(&kernel.name);
+            let mut encoder = self.encoder(name);
             {
                 let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
-                    label: Some(&kernel.name),
+                    label: Some(name),
                     timestamp_writes: timer.map(Timer::writes),
                 });
-                pass.set_pipeline(&kernel.pipeline);
-                pass.set_bind_group(0, &group, &[]);
-                let [x, y, z] = workgroups;
-                pass.dispatch_workgroups(x, y, z);
+                for (kernel, [x, y, z]) in kernels {
+                    pass.set_pipeline(&kernel.pipeline);
+                    pass.set_bind_group(0, &self.bind_group(kernel, bindings), &[]);
+                    pass.dispatch_workgroups(*x, *y, *z);
+                }
             }
             if let Some(timer) = timer {
                 timer.resolve(&mut encoder);
@@ -653,11 +671,10 @@ impl Gpu {
             _ => None,
         };
         waited?;
-        tracing::trace!(
-            "ran {} in {workgroups:?} workgroups of {:?} threads: {host:.1?}",
-            kernel.name,
-            kernel.workgroup_size
-        );
+        tracing::trace!("ran {name} in {:?} workgroups: {host:.1?}", {
+            let workgroups: Vec<[u32; 3]> = kernels.iter().map(|(_, count)| *count).collect();
+            workgroups
+        });
         Ok(LaunchTime { device, host })
     }
 

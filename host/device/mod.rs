@@ -8,6 +8,7 @@
 //! | `mapping`, `timer` | mapping device memory for the host; the time of a launch |
 //! | [`spirv`] | [`Module`]: SPIR-V, checked and specialised |
 //! | [`buffer`] | [`Buffer`]: device memory |
+//! | `deferring` | one launch on a rung, or two of which the second answers what the first left open |
 //! | [`busy`] | keeps a GPU's clock up before something is timed |
 //! | [`canary`] | measures the arithmetic that the upper rungs need |
 //! | [`rung`] | the module that runs a rung on a GPU, with 64-bit floats where they pay |
@@ -24,6 +25,8 @@ pub mod busy;
 #[cfg(feature = "gpu")]
 pub mod canary;
 mod choice;
+#[cfg(feature = "gpu")]
+mod deferring;
 #[cfg(feature = "gpu")]
 mod errors;
 #[cfg(feature = "gpu")]
@@ -46,6 +49,8 @@ pub use adapter::{AdapterReport, list_adapters};
 #[cfg(feature = "gpu")]
 pub use buffer::{Access, Binding, Buffer};
 pub use choice::DeviceChoice;
+#[cfg(feature = "gpu")]
+pub(crate) use deferring::Deferring;
 #[cfg(feature = "gpu")]
 pub use errors::is_catching;
 #[cfg(feature = "gpu")]

@@ -1,7 +1,7 @@
 //! The module that runs a rung on a GPU.
 
 use spherule_kernel::Rung;
-use spherule_kernel::precision::Needs;
+use spherule_kernel::precision::{DEFERRING, Needs, SECOND_SPEC_ID};
 use spherule_kernel::probe::throughput::{MULTIPLICATIONS, WIDE_MULTIPLICATIONS};
 
 use super::buffer::Access;
@@ -27,6 +27,30 @@ pub fn module(gpu: &Gpu, rung: Rung) -> Result<Module> {
         kernel_module::f32()
     };
     module?.specialise(Rung::SPEC_ID, rung.to_u32())
+}
+
+/// The modules whose launches, one after the other, answer on this rung what is asked of the entry
+/// points that render and trace: one, or for certified a first that defers what few rays ask for,
+/// and a second that does nothing else.
+///
+/// # Errors
+///
+/// As [`module`].
+pub fn modules(gpu: &Gpu, rung: Rung) -> Result<Vec<Module>> {
+    let whole = module(gpu, rung)?;
+    if rung != Rung::Certified {
+        return Ok(vec![whole]);
+    }
+    Ok(vec![
+        whole.clone().specialise(
+            Rung::SPEC_ID,
+            std::env::var("VARIANT")
+                .ok()
+                .and_then(|v| v.parse().ok())
+                .unwrap_or(DEFERRING),
+        )?,
+        whole.specialise(SECOND_SPEC_ID, 1)?,
+    ])
 }
 
 /// Whether the rung uses 64-bit floats on this GPU.

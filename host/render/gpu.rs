@@ -15,7 +15,7 @@ use super::tiles::Tiles;
 use super::{Progress, QUIET, Settings, Timings};
 use crate::accel::{self, BuiltTree};
 use crate::device::canary::Canary;
-use crate::device::{Access, Buffer, Gpu, Kernel, Staging, rung};
+use crate::device::{Access, Buffer, Deferring, Gpu, Staging, rung};
 use crate::error::{Error, Result};
 use crate::film;
 use crate::scene::World;
@@ -78,7 +78,7 @@ impl Search {
 /// A world on a GPU, and the kernel for it.
 #[derive(Debug)]
 pub struct Prepared {
-    kernel: Kernel,
+    kernel: Deferring,
     /// The world, in parts that each fit one binding.
     parts: Vec<Part>,
     materials: Buffer<Material>,
@@ -137,9 +137,7 @@ impl Prepared {
                 },
             })
         });
-        let module = rung::module(gpu, settings.rung)?
-            .specialise(Shading::SPEC_ID, settings.shading.to_u32())?
-            .specialise(Node::SPEC_ID, trees.is_some().into())?;
+        let module = rung::module(gpu, settings.rung)?;
         // Vulkan promises workgroups of 128 threads only.
         let has_lists = module.entry_points().iter().any(|entry| {
             let threads: u32 = entry.workgroup_size.iter().product();
@@ -157,8 +155,14 @@ impl Prepared {
         if let [first, .., last] = &mut access[..] {
             (*first, *last) = (Access::Uniform, Access::ReadWrite);
         }
+        let entry_point = search.entry_point();
+        let kernel = Deferring::compile(gpu, settings.rung, entry_point, &access, |module| {
+            module
+                .specialise(Shading::SPEC_ID, settings.shading.to_u32())?
+                .specialise(Node::SPEC_ID, trees.is_some().into())
+        })?;
         Ok(Self {
-            kernel: gpu.kernel(&module, search.entry_point(), &access)?,
+            kernel,
             search,
             parts: parts.collect::<Result<_>>()?,
             materials: gpu.upload("materials", &world.materials)?,
@@ -263,6 +267,7 @@ fn each_tile(
         launch: gpu.upload_uniform("launch", launch)?,
         staging: gpu.staging(&pixels, tiles.max_pixels())?,
         pixels,
+        deferred: Deferring::list(gpu, tiles.max_pixels())?,
     };
     let mut timings = Timings {
         setup: started.elapsed(),
@@ -300,6 +305,8 @@ fn each_tile(
 struct Target {
     launch: Buffer<Launch>,
     pixels: Buffer<Pixel>,
+    /// The pixels, or tiles of them, that a first launch leaves to a second.
+    deferred: Buffer<u32>,
     /// What they are read through.
     staging: Staging,
 }
@@ -345,7 +352,9 @@ fn render_tile(
                 world.kernel.workgroups_for([tile.x, tile.y, 1])
             };
             bindings.push(target.pixels.binding());
-            let time = gpu.launch(&world.kernel, &bindings, groups)?;
+            let time = world
+                .kernel
+                .launch(gpu, bindings, &target.deferred, groups)?;
             let work = world.search.work(launch.sphere_count.into());
             pace.learn(pixels * work, time.best());
             took += time.best();

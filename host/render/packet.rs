@@ -21,6 +21,7 @@ use spherule_kernel::cull::bounds::Aim;
 use spherule_kernel::cull::discriminant::Target;
 use spherule_kernel::cull::frustum::inward_normal;
 use spherule_kernel::lane::{Lane, Lane3};
+use spherule_kernel::precision::certified::corrected::Residual;
 use spherule_kernel::precision::certified::wide::WideRay;
 use spherule_kernel::precision::root::root_within;
 use spherule_kernel::precision::{self, double, intersect, robust};
@@ -622,16 +623,38 @@ impl Packet {
             y: Double16::widened(Single16::load(simd, &columns[1])),
             z: Double16::widened(Single16::load(simd, &columns[2])),
         };
-        let radius = Double16::widened(Single16::load(simd, &columns[3]));
-        let answer = self.wide_rays(simd, group).intersect(center, radius);
-        let mut found = [0.0; LANES];
-        answer.t.rounded().store(&mut found);
-        let certain = answer.is_certain.narrowed(simd).to_bitmask() as u32 & asked;
-        for lane in (0..LANES).filter(|lane| certain >> lane & 1 == 1) {
-            self.t[group].0[lane] = found[lane];
-            self.low[group].0[lane] = found[lane];
+        let single_radius = Single16::load(simd, &columns[3]);
+        let radius = Double16::widened(single_radius);
+        let rays = self.wide_rays(simd, group);
+        // The bounds are about the root, and their middle is near it.
+        let (low, high) = (
+            Single16::load(simd, &self.low[group].0),
+            Single16::load(simd, &self.t[group].0),
+        );
+        let guess = (low + high) * Single16::splat(simd, 0.5);
+        let Residual { g, h } = rays.residual(center, radius, Double16::widened(guess));
+        let (g, h) = (g.rounded(), h.rounded());
+        let corrected =
+            Residual { g, h }.correct(guess, self.direction(simd, group), single_radius);
+        let certain = (corrected.is_certain & corrected.is_near).to_bitmask() as u32 & asked;
+        self.put(simd, group, certain, corrected.t);
+        let asked = asked & !certain;
+        if asked == 0 {
+            return 0;
         }
+        let answer = rays.intersect(center, radius);
+        let certain = asked & answer.is_certain.narrowed(simd).to_bitmask() as u32;
+        self.put(simd, group, certain, answer.t.rounded());
         asked & !certain
+    }
+
+    /// Puts the answers of a rung for these rays, a bit each.
+    #[inline(always)]
+    fn put<S: Simd>(&mut self, simd: S, group: usize, rays: u32, found: Single16<S>) {
+        let rays = mask32x16::from_bitmask(simd, rays.into());
+        for values in [&mut self.t[group].0, &mut self.low[group].0] {
+            Single16::select(rays, found, Single16::load(simd, values)).store(values);
+        }
     }
 
     /// The rays of a group, which have no end, in 64-bit floats.

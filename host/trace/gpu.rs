@@ -6,7 +6,7 @@ use spherule_kernel::accel::node::Node;
 use spherule_kernel::{Hit, Ray, Rung, Sphere};
 
 use crate::accel::{self, Acceleration};
-use crate::device::{Access, Buffer, Gpu, Kernel, rung};
+use crate::device::{Access, Buffer, Deferring, Gpu, rung};
 use crate::error::Result;
 
 /// The fewest spheres for which a tree pays, for single rays on a GPU.
@@ -29,6 +29,8 @@ pub struct Batch {
     rays: Buffer<Ray>,
     hits: Buffer<Hit>,
     occluded: Buffer<u32>,
+    /// The rays that a first launch leaves to a second.
+    deferred: Buffer<u32>,
 }
 
 impl<'a> GpuTracer<'a> {
@@ -73,6 +75,7 @@ impl<'a> GpuTracer<'a> {
             rays: self.gpu.upload("rays", rays)?,
             hits: self.gpu.zeroed("hits", rays.len())?,
             occluded: self.gpu.zeroed("occluded", rays.len())?,
+            deferred: Deferring::list(self.gpu, rays.len())?,
         })
     }
 
@@ -130,26 +133,26 @@ impl<'a> GpuTracer<'a> {
         batch: &Batch,
         output: crate::device::Binding<'_>,
     ) -> Result<Duration> {
-        let module = rung::module(self.gpu, rung)?;
         let (rays, spheres) = (batch.rays.binding(), self.spheres.binding());
         let (read, write) = (Access::Read, Access::ReadWrite);
-        let kernel: Kernel;
-        let bindings = match &self.nodes {
-            Some(nodes) => {
-                kernel = self
-                    .gpu
-                    .kernel(&module, in_tree, &[read, read, read, write])?;
-                vec![rays, spheres, nodes.binding(), output]
-            }
-            None => {
-                kernel = self
-                    .gpu
-                    .kernel(&module, brute_force, &[read, read, write])?;
-                vec![rays, spheres, output]
-            }
+        let threads = [batch.rays.len() as u32, 1, 1];
+        let time = if let Some(nodes) = &self.nodes {
+            let access = [read, read, read, write];
+            let kernel = Deferring::compile(self.gpu, rung, in_tree, &access, Ok)?;
+            let [groups, ..] = kernel.workgroups_for(threads);
+            let bindings = vec![rays, spheres, nodes.binding(), output];
+            let groups = self.gpu.rows_of(groups);
+            kernel.launch(self.gpu, bindings, &batch.deferred, groups)?
+        } else {
+            let module = rung::module(self.gpu, rung)?;
+            let kernel = self
+                .gpu
+                .kernel(&module, brute_force, &[read, read, write])?;
+            let [groups, ..] = kernel.workgroups_for(threads);
+            let bindings = [rays, spheres, output];
+            self.gpu
+                .launch(&kernel, &bindings, self.gpu.rows_of(groups))?
         };
-        let [groups, ..] = kernel.workgroups_for([batch.rays.len() as u32, 1, 1]);
-        let groups = self.gpu.rows_of(groups);
-        Ok(self.gpu.launch(&kernel, &bindings, groups)?.best())
+        Ok(time.best())
     }
 }

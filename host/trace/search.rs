@@ -15,7 +15,7 @@ use spherule_kernel::accel::node::{Extent, Node};
 use spherule_kernel::cull::bounds::Line;
 use spherule_kernel::cull::discriminant::Target;
 use spherule_kernel::lane::Lane3;
-use spherule_kernel::precision::{self, OnRung, Precision, Robust};
+use spherule_kernel::precision::{self, OnRung, Precision, Robust, certified};
 use spherule_kernel::{Hit, Ray, Rung, Sphere};
 
 #[cfg(target_arch = "x86_64")]
@@ -126,6 +126,7 @@ pub(super) struct Search {
     /// Whether the rung is slow and is evaluated at the end, as in the kernel's walk.
     is_lazy: bool,
     is_robust: bool,
+    is_certified: bool,
     /// Whether the rung's hits lie within [`bounds`](spherule_kernel::cull::bounds).
     #[cfg(target_arch = "x86_64")]
     is_bounded: bool,
@@ -153,6 +154,7 @@ impl Search {
             intersect,
             is_lazy: precision::is_lazy(rung.to_u32()),
             is_robust: rung == Rung::Robust,
+            is_certified: rung == Rung::Certified,
             #[cfg(target_arch = "x86_64")]
             is_bounded: rung.is_bounded(),
             left,
@@ -182,7 +184,7 @@ impl Search {
     fn evaluate_deferred(&mut self) {
         if let Some(sphere) = self.deferred.take() {
             self.ray.t_max = self.end;
-            let t = (self.intersect)(sphere, &self.ray);
+            let t = self.entry(sphere);
             if t < self.end {
                 self.found_at(t, self.hit.sphere);
             } else {
@@ -191,6 +193,19 @@ impl Search {
                 self.low = self.end * self.line.unit;
             }
         }
+    }
+
+    /// Where the ray enters a sphere, which its bounds say it certainly does.
+    #[inline(always)]
+    fn entry(&self, sphere: Sphere) -> f32 {
+        if self.is_certified {
+            let (low, high) = (self.low / self.line.unit, self.hit.t);
+            let t = certified::entry_or_defer(sphere, &self.ray, low + 0.5 * (high - low));
+            if t != Hit::DEFERRED_T {
+                return t;
+            }
+        }
+        (self.intersect)(sphere, &self.ray)
     }
 
     /// Records a hit of the rung as the nearest.

@@ -40,6 +40,9 @@ pub struct Launch {
 /// Pixels along each side of what a workgroup of `render_by_tiles` has.
 pub const TILE: u32 = 32;
 
+/// The sign of a float.
+const SIGN: u32 = 1 << 31;
+
 /// One pixel: a linear colour, and the depth that decides between launches.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
@@ -69,7 +72,25 @@ impl Pixel {
     #[inline]
     #[must_use]
     pub fn depth(&self) -> f32 {
-        self.color_depth.w
+        f32::from_bits(self.color_depth.w.to_bits() & !SIGN)
+    }
+
+    /// This pixel as one that a second launch is to write: see
+    /// [`DEFERRING`](crate::precision::DEFERRING). Colour and depth are kept.
+    #[inline]
+    #[must_use]
+    pub fn deferred(&self) -> Self {
+        Self::new(
+            self.color(),
+            f32::from_bits(self.color_depth.w.to_bits() | SIGN),
+        )
+    }
+
+    /// Whether a second launch is to write the pixel.
+    #[inline]
+    #[must_use]
+    pub fn is_deferred(&self) -> bool {
+        self.color_depth.w.to_bits() & SIGN != 0
     }
 
     /// Whether the pixel shows a sphere.
@@ -79,12 +100,12 @@ impl Pixel {
         self.depth() < Hit::NONE_T
     }
 
-    /// Whether a kernel has written the pixel. Buffers start as zeros, and no kernel writes a
-    /// depth of zero, so an invocation that ended early leaves this false behind.
+    /// Whether a kernel has written the pixel, and deferred nothing. Buffers start as zeros, and no
+    /// kernel writes a depth of zero, so an invocation that ended early leaves this false behind.
     #[inline]
     #[must_use]
     pub fn is_written(&self) -> bool {
-        self.depth() > 0.0
+        self.color_depth.w > 0.0
     }
 }
 

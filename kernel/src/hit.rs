@@ -18,6 +18,9 @@ pub struct Hit {
 impl Hit {
     /// The parameter that stands for "no hit": the largest finite number.
     pub const NONE_T: f32 = f32::MAX;
+    /// The parameter that stands for "not decided yet": see
+    /// [`DEFERRING`](crate::precision::DEFERRING).
+    pub const DEFERRED_T: f32 = -f32::MAX;
     /// The index that stands for "no sphere".
     pub const NONE_SPHERE: u32 = u32::MAX;
     /// No hit.
@@ -31,6 +34,13 @@ impl Hit {
     #[must_use]
     pub fn is_some(&self) -> bool {
         self.sphere != Self::NONE_SPHERE
+    }
+
+    /// Whether that is left to a second launch: see [`DEFERRING`](crate::precision::DEFERRING).
+    #[inline]
+    #[must_use]
+    pub fn is_deferred(&self) -> bool {
+        self.t == Self::DEFERRED_T
     }
 }
 

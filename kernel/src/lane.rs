@@ -5,7 +5,7 @@
 //! for vectors. Each operation is rounded as IEEE 754 says, and none is fused with another, so that
 //! a lane of a vector has the same bits as a single number. The exceptions are
 //! [`Lane::mul_add_rough`] and [`Lane::mul_sub_rough`], which are for bounds. A GPU's driver may
-//! fuse and simplify all but [`Lane::add_strict`] and [`Lane::sub_strict`].
+//! fuse and simplify all but [`Lane::add_strict`], [`Lane::sub_strict`] and [`Lane::mul_strict`].
 
 use core::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
@@ -56,6 +56,11 @@ pub trait Lane:
     fn sub_strict(self, other: Self) -> Self {
         self - other
     }
+    /// The product, as [`Lane::add_strict`].
+    #[inline(always)]
+    fn mul_strict(self, other: Self) -> Self {
+        self * other
+    }
     /// `self · factor + term`, rounded once or twice, whichever is faster; for bounds that hold
     /// either way.
     #[inline(always)]
@@ -92,21 +97,12 @@ pub trait Word: Lane<Mask = bool> {
     /// 2ˢ + 1, where s is half of the bits of a significand, rounded up: what T. J. Dekker splits
     /// numbers by.
     const SPLITTER: Self;
-
-    /// The product, as [`Lane::add_strict`].
-    #[must_use]
-    fn mul_strict(self, other: Self) -> Self;
 }
 
 macro_rules! scalar {
     ($float:ty, $add:ident, $sub:ident, $mul:ident, $splitter:literal) => {
         impl Word for $float {
             const SPLITTER: Self = $splitter;
-
-            #[inline(always)]
-            fn mul_strict(self, other: Self) -> Self {
-                $mul(self, other)
-            }
         }
 
         impl Lane for $float {
@@ -125,6 +121,11 @@ macro_rules! scalar {
             #[inline(always)]
             fn sub_strict(self, other: Self) -> Self {
                 $sub(self, other)
+            }
+
+            #[inline(always)]
+            fn mul_strict(self, other: Self) -> Self {
+                $mul(self, other)
             }
 
             #[inline(always)]

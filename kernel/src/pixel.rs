@@ -5,13 +5,14 @@
 
 use glam::UVec2;
 
-use crate::accel::brute::nearest_hit_in;
+use crate::accel::brute::{nearest_hit_by_bounds, nearest_hit_in};
 use crate::accel::node::Tree;
 use crate::accel::walk::nearest_hit_in_tree;
 use crate::arithmetic::elements::read;
 use crate::film::{Launch, Pixel};
 use crate::hit::Hit;
 use crate::material::{Material, material_of};
+use crate::precision::{DEFERRING, Rung, is_lazy};
 use crate::ray::Ray;
 use crate::shading::{Seen, shade};
 use crate::sphere::Sphere;
@@ -20,7 +21,7 @@ use crate::surface::Surface;
 /// Renders one pixel of a launch: `pixel` counts from the upper left of the tile, `previous` is
 /// what the pixel holds so far, `shading` and `rung` are values of
 /// [`Shading::to_u32`](crate::Shading::to_u32) and
-/// [`Rung::to_u32`](crate::precision::Rung::to_u32). Returns the pixel.
+/// [`Rung::to_u32`](crate::precision::Rung::to_u32), or [`DEFERRING`]. Returns the pixel.
 ///
 /// With `has_tree` 1 the spheres are those of `tree`, whatever run of them the launch names.
 /// `spheres` and `material_ids` run in parallel; an index beyond `materials`
@@ -46,10 +47,23 @@ pub fn render_pixel(
     let ray = launch.ray(pixel, previous);
     let hit = if has_tree == 1 {
         nearest_hit_in_tree(rung, &ray, tree, spheres)
+    } else if is_lazy(rung) & (rung != Rung::Certified.to_u32()) {
+        // The whole of certified is for the few rays that are deferred: one copy of its code,
+        // below, is worth more than to evaluate it once a ray.
+        nearest_hit_by_bounds(
+            rung,
+            &ray,
+            spheres,
+            launch.first_sphere,
+            launch.sphere_count,
+        )
     } else {
         let (first, count) = (launch.first_sphere, launch.sphere_count);
         nearest_hit_in(rung, &ray, spheres, first, count)
     };
+    if (rung == DEFERRING) & hit.is_deferred() {
+        return launch.unless_hit(previous).deferred();
+    }
     launch.pixel(
         shading,
         &ray,
@@ -82,7 +96,7 @@ impl Launch {
     #[must_use]
     pub fn unless_hit(&self, previous: &Pixel) -> Pixel {
         if self.first_of_tile == 0 {
-            *previous
+            Pixel::new(previous.color(), previous.depth())
         } else {
             self.blank()
         }

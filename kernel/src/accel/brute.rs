@@ -5,14 +5,19 @@ use glam::Vec4;
 use spirv_std::arch::IndexUnchecked;
 
 use crate::arithmetic::elements::read;
+use crate::cull::bounds::Line;
 use crate::effects::Effects;
 use crate::hit::Hit;
-use crate::precision::{Rung, intersect};
+use crate::precision::{Rung, entry_or_defer, intersect, intersect_or_defer};
 use crate::ray::Ray;
 use crate::sphere::Sphere;
 
 /// Spheres by their indices: a slice of them, or [`MovingSpheres`].
 pub trait Spheres {
+    /// Whether a launch on [`DEFERRING`](crate::precision::DEFERRING) may ask about these spheres.
+    /// For others its code is left out.
+    const MAY_DEFER: bool;
+
     /// How many there are.
     fn count(&self) -> u32;
 
@@ -49,7 +54,38 @@ pub(super) fn passes_over<const ANY: bool, S: Spheres + ?Sized>(spheres: &S, ind
     }
 }
 
+/// [`intersect_or_defer`], or [`intersect`] for spheres about which nothing is deferred.
+#[inline]
+pub(super) fn ask<S: Spheres + ?Sized>(rung: u32, sphere: Sphere, ray: &Ray) -> f32 {
+    if S::MAY_DEFER {
+        intersect_or_defer(rung, sphere, ray)
+    } else {
+        intersect(rung, sphere, ray)
+    }
+}
+
+/// [`entry_or_defer`], or [`intersect`] for spheres about which nothing is deferred. The ray enters
+/// between two parameters of the line.
+#[inline]
+pub(super) fn ask_entry<S: Spheres + ?Sized>(
+    rung: u32,
+    sphere: Sphere,
+    ray: &Ray,
+    line: &Line,
+    low: f32,
+    high: f32,
+) -> f32 {
+    if S::MAY_DEFER {
+        let one = 1.0 / line.unit;
+        entry_or_defer(rung, sphere, ray, low * one, high * one)
+    } else {
+        intersect(rung, sphere, ray)
+    }
+}
+
 impl Spheres for [Sphere] {
+    const MAY_DEFER: bool = true;
+
     #[inline]
     fn count(&self) -> u32 {
         self.len().min(u32::MAX as usize) as u32
@@ -104,6 +140,8 @@ impl MovingSpheres<'_> {
 }
 
 impl Spheres for MovingSpheres<'_> {
+    const MAY_DEFER: bool = false;
+
     #[inline]
     fn count(&self) -> u32 {
         self.spheres.count()
@@ -184,6 +222,72 @@ pub fn nearest_hit_in<S: Spheres + ?Sized>(
             t: t_max,
             sphere: hit,
         }
+    }
+}
+
+/// [`nearest_hit_in`] for [lazy](crate::precision::is_lazy) rungs, with the same answer for less:
+/// [bounds](crate::cull::bounds) find the nearest sphere, and the rung is evaluated for that one
+/// and where they leave open which it is.
+#[inline]
+#[must_use]
+pub fn nearest_hit_by_bounds<S: Spheres + ?Sized>(
+    rung: u32,
+    ray: &Ray,
+    spheres: &S,
+    first: u32,
+    count: u32,
+) -> Hit {
+    let len = spheres.count();
+    let first = first.min(len);
+    let stop = first + count.min(len - first);
+
+    let line = Line::of(ray);
+    let ray = &Ray {
+        t_max: ray.end(),
+        ..*ray
+    };
+    // As in a walk through a tree: the nearest hit so far, and its sphere. Where the nearest sphere
+    // may begin, and where it certainly has begun, in the line's parameters: `low` is below `end`
+    // as long as the rung was not evaluated for it.
+    let mut t = ray.t_max;
+    let mut hit = Hit::NONE_SPHERE;
+    let mut end = t * line.unit;
+    let mut low = end;
+    let mut index = first;
+    while index < stop {
+        // SAFETY: `stop` is at most the number of spheres.
+        let bounds = line.bounds(unsafe { spheres.sphere(index) });
+        let is_left = spheres.is_left(index);
+        if bounds.hits & (bounds.high < low) & !is_left {
+            (hit, low, end) = (index, bounds.low, bounds.high);
+        } else if bounds.is_open(end) & !is_left {
+            // The nearest sphere comes first, if the rung was not evaluated for it.
+            let mut asked = if low < end { hit } else { index };
+            loop {
+                // SAFETY: both are below the number of spheres.
+                let answer = ask::<S>(rung, unsafe { spheres.sphere(asked) }, ray);
+                if (answer < t) | ((answer == t) & (asked < hit)) {
+                    (t, hit) = (answer, asked);
+                }
+                end = t * line.unit;
+                low = end;
+                if asked == index {
+                    break;
+                }
+                asked = index;
+            }
+        }
+        index += 1;
+    }
+    if low < end {
+        // SAFETY: a sphere was found that begins at `low` or later.
+        let sphere = unsafe { spheres.sphere(hit) };
+        t = ask_entry::<S>(rung, sphere, ray, &line, low, end);
+    }
+    if t < ray.t_max {
+        Hit { t, sphere: hit }
+    } else {
+        Hit::NONE
     }
 }
 

@@ -8,11 +8,14 @@ use spirv_std::arch::{
 };
 use spirv_std::memory::{Scope, Semantics};
 
+use super::brute::ask_entry;
+use crate::cull::bounds::Line;
 use crate::cull::cone::{Cone, Sight};
 use crate::cull::frustum::{Frustum, Plane};
 use crate::film::TILE;
+use crate::gpu::deferred::defer;
 use crate::gpu::instructions::{highest_bit, lowest_bit};
-use crate::precision::intersect;
+use crate::precision::{DEFERRING, Rung, intersect_or_defer, is_lazy};
 use crate::{Camera, Hit, Launch, Material, Pixel, Sphere};
 
 /// The size of a workgroup in threads; one workgroup renders one tile.
@@ -46,6 +49,8 @@ pub struct Shared<'a> {
     pub rows: &'a mut [f32; TILE as usize],
     /// How many spheres are in the list, or would be if it had room.
     pub listed: &'a mut u32,
+    /// How many pixels were deferred.
+    pub deferred: &'a mut u32,
     /// The indices of the spheres that may be seen. Those of one batch are in no order.
     pub list: &'a mut [u32; LISTED],
     /// The spheres in the list.
@@ -54,26 +59,30 @@ pub struct Shared<'a> {
     pub cones: &'a mut [Vec4; LISTED],
 }
 
-/// Renders the pixels of one workgroup of a launch.
+/// Renders the pixels of a tile of a launch, given by its place, with one workgroup. In the second
+/// of two launches these are the pixels that the first deferred; `deferred` lists tiles that have
+/// some.
 #[expect(
     clippy::too_many_arguments,
     reason = "these are the kernel's bindings, one each"
 )]
 #[inline]
 pub fn render_group(
-    group: UVec2,
+    tile: UVec2,
     local: UVec2,
     shading: u32,
     rung: u32,
+    is_second: u32,
     launch: &Launch,
     spheres: &[Sphere],
     material_ids: &[u32],
     materials: &[Material],
     pixels: &mut [Pixel],
+    deferred: &mut [u32],
     shared: &mut Shared<'_>,
 ) {
     let thread = local.y * GROUP.x + local.x;
-    let corner = UVec2::new(group.x, from_the_middle(group.y, launch.tile_size.y)) * TILE;
+    let corner = tile * TILE;
     let block = UVec2::new(local.y / BLOCK.y % ABREAST, local.y / BLOCK.y / ABREAST);
     let first_pixel = corner + block * BLOCK + UVec2::new(local.x, local.y % BLOCK.y);
     let across = film(launch, first_pixel).x;
@@ -91,12 +100,20 @@ pub fn render_group(
     }
     if thread == 0 {
         *shared.listed = 0;
+        *shared.deferred = 0;
     }
 
     let len = spheres.len() as u32;
     let mut first = launch.first_sphere.min(len);
     let end = first + launch.sphere_count.min(len - first);
     let mut is_continued = launch.first_of_tile == 0;
+    // The rows of this thread's pixels that the second launch renders, by their lowest bits.
+    let mut rendered = 0;
+    if is_second == 1 {
+        // What the first launch deferred is blank, or shows what it found before that.
+        is_continued = true;
+        rendered = take_deferred(first_pixel, launch.tile_size, pixels);
+    }
     let mut batch = BATCH;
     let mut before = 0;
     // Every thread of the workgroup goes through the same iterations.
@@ -110,7 +127,7 @@ pub fn render_group(
         ];
         let frustum = Frustum::within(launch.camera.eye, planes);
         let stop = first + batch.min(end - first);
-        list_seen(&frustum, spheres, first, stop, thread, shared);
+        list_seen(rung, &frustum, spheres, first, stop, thread, shared);
         workgroup_memory_barrier_with_group_sync();
         let mut count = *shared.listed;
         let mut is_due = true;
@@ -144,20 +161,24 @@ pub fn render_group(
                 // SAFETY: there is one element for each row of the tile.
                 let upwards =
                     unsafe { *shared.rows.index_unchecked((pixel.y - corner.y) as usize) };
-                render_listed(
-                    pixel,
-                    Vec2::new(across, upwards),
-                    count,
-                    is_continued,
-                    shading,
-                    rung,
-                    launch,
-                    spheres,
-                    material_ids,
-                    materials,
-                    pixels,
-                    shared,
-                );
+                if (is_second == 0) | (rendered >> (row / ROWS) & 1 == 1) {
+                    render_listed(
+                        pixel,
+                        Vec2::new(across, upwards),
+                        count,
+                        is_continued,
+                        shading,
+                        rung,
+                        launch,
+                        spheres,
+                        material_ids,
+                        materials,
+                        pixels,
+                        tile,
+                        deferred,
+                        shared,
+                    );
+                }
                 row += ROWS;
                 if row >= TILE {
                     break;
@@ -171,11 +192,41 @@ pub fn render_group(
     }
 }
 
+/// How many tiles stand side by side in a launch.
+#[inline]
+#[must_use]
+pub fn columns(launch: &Launch) -> u32 {
+    launch.tile_size.x.div_ceil(TILE)
+}
+
+/// Which of a thread's pixels were deferred, the topmost by the lowest bit; they are marked as
+/// written.
+#[inline]
+fn take_deferred(first_pixel: UVec2, tile_size: UVec2, pixels: &mut [Pixel]) -> u32 {
+    let mut deferred = 0;
+    let mut row = 0;
+    while row < TILE {
+        let pixel = first_pixel + UVec2::new(0, row);
+        let place = (pixel.y * tile_size.x + pixel.x) as usize;
+        if (pixel.x < tile_size.x) & (pixel.y < tile_size.y) & (place < pixels.len()) {
+            // SAFETY: as just asked.
+            let pixel = unsafe { pixels.index_unchecked_mut(place) };
+            if pixel.is_deferred() {
+                *pixel = Pixel::new(pixel.color(), pixel.depth());
+                deferred |= 1 << (row / ROWS);
+            }
+        }
+        row += ROWS;
+    }
+    deferred
+}
+
 /// The row of tiles that a row of workgroups renders, in a launch of `height` rows of pixels. The
 /// middle rows come first: images have most spheres there, and what takes longest must not begin
 /// last.
 #[inline]
-fn from_the_middle(row: u32, height: u32) -> u32 {
+#[must_use]
+pub fn from_the_middle(row: u32, height: u32) -> u32 {
     let (middle, away) = (height.div_ceil(TILE) / 2, row.div_ceil(2));
     if row & 1 == 1 {
         middle - away
@@ -188,6 +239,7 @@ fn from_the_middle(row: u32, height: u32) -> u32 {
 /// that the frustum does not miss.
 #[inline]
 fn list_seen(
+    rung: u32,
     frustum: &Frustum,
     spheres: &[Sphere],
     first: u32,
@@ -205,8 +257,8 @@ fn list_seen(
         // Both are loaded before the first is tested, so that a thread waits for memory once.
         let one = look(mine);
         let two = look((mine + THREADS).min(stop - 1));
-        let mut seen = u32::from(!frustum.misses(one));
-        seen |= u32::from(!frustum.misses(two) & (mine + THREADS < stop)) << 1;
+        let mut seen = u32::from(!frustum.misses(rung, one));
+        seen |= u32::from(!frustum.misses(rung, two) & (mine + THREADS < stop)) << 1;
         if seen != 0 {
             loop {
                 let which = lowest_bit(seen);
@@ -278,7 +330,9 @@ fn render_listed(
     material_ids: &[u32],
     materials: &[Material],
     pixels: &mut [Pixel],
-    shared: &Shared<'_>,
+    tile: UVec2,
+    deferred: &mut [u32],
+    shared: &mut Shared<'_>,
 ) {
     let UVec2 {
         x: width,
@@ -299,11 +353,23 @@ fn render_listed(
     let mut end = Hit::NONE_T;
     if is_continued {
         // SAFETY: `place` is below the number of pixels.
-        end = unsafe { pixels.index_unchecked(place).depth() };
+        let pixel = unsafe { *pixels.index_unchecked(place) };
+        if (rung == DEFERRING) & pixel.is_deferred() {
+            return;
+        }
+        end = pixel.depth();
     }
     let ray = launch.camera.ray(film);
     let sight = Sight::along(ray.direction);
     let mut nearest = Hit { t: end, sphere: 0 };
+    // For lazy rungs, as in a walk through a tree: where the nearest sphere may begin, and where it
+    // certainly has begun, in the line's parameters. The former is below the latter as long as the
+    // rung was not evaluated for it. The whole of certified is for the few rays that are deferred:
+    // one copy of its code is worth more than to evaluate it once a ray.
+    let is_lazy = is_lazy(rung) & (rung != Rung::Certified.to_u32());
+    let line = Line::of(&ray);
+    let mut high = end * line.unit;
+    let mut low = high;
     let mut base = 0;
     // The loops test their end at the end of the body: otherwise the driver copies everything that
     // changes. The list is not empty here.
@@ -323,16 +389,48 @@ fn render_listed(
         }
         // The lowest bit is the last cone's.
         let mut candidates = !misses;
+        if is_lazy & (candidates != 0) {
+            let mut all = candidates;
+            candidates = 0;
+            loop {
+                let bit = highest_bit(all);
+                all ^= 1 << bit;
+                let (index, sphere) = listed(stop - 1 - bit, shared);
+                let bounds = line.bounds(sphere);
+                if bounds.hits & (bounds.high < low) {
+                    nearest.sphere = index;
+                    (low, high) = (bounds.low, bounds.high);
+                } else {
+                    candidates |= u32::from(bounds.is_open(high)) << bit;
+                }
+                if all == 0 {
+                    break;
+                }
+            }
+        }
         if candidates != 0 {
             loop {
-                let bit = highest_bit(candidates);
-                candidates ^= 1 << bit;
-                let (index, sphere) = listed(stop - 1 - bit, shared);
-                let t = intersect(rung, sphere, &ray);
+                let index;
+                let sphere;
+                if is_lazy & (low < high) {
+                    // The nearest sphere comes first, if the rung was not evaluated for it.
+                    index = nearest.sphere;
+                    // SAFETY: listed indices are below the number of spheres.
+                    sphere = unsafe { *spheres.index_unchecked(index as usize) };
+                } else {
+                    let bit = highest_bit(candidates);
+                    candidates ^= 1 << bit;
+                    (index, sphere) = listed(stop - 1 - bit, shared);
+                }
+                let t = intersect_or_defer(rung, sphere, &ray);
                 // The list is in no order: of two spheres at the same t, the one with the lower
                 // index wins.
                 if (t < nearest.t) | ((t == nearest.t) & (index < nearest.sphere)) {
                     nearest = Hit { t, sphere: index };
+                }
+                if is_lazy {
+                    high = nearest.t * line.unit;
+                    low = high;
                 }
                 if candidates == 0 {
                     break;
@@ -343,6 +441,22 @@ fn render_listed(
         if base >= count {
             break;
         }
+    }
+    if is_lazy & (low < high) {
+        // SAFETY: listed indices are below the number of spheres.
+        let sphere = unsafe { *spheres.index_unchecked(nearest.sphere as usize) };
+        nearest.t = ask_entry::<[Sphere]>(rung, sphere, &ray, &line, low, high);
+    }
+    if (rung == DEFERRING) & nearest.is_deferred() {
+        // SAFETY: all threads count by atomic additions.
+        let before = unsafe { atomic_i_add::<u32, WORKGROUP, RELAXED>(shared.deferred, 1) };
+        if before == 0 {
+            defer(deferred, tile.y * columns(launch) + tile.x);
+        }
+        // SAFETY: `place` is below the number of pixels.
+        let pixel = unsafe { pixels.index_unchecked_mut(place) };
+        *pixel = if is_continued { *pixel } else { blank }.deferred();
+        return;
     }
     // A pixel keeps the colour that it has from earlier spheres unless a sphere of this list is
     // nearer.

@@ -16,13 +16,13 @@ use core::mem::MaybeUninit;
 use glam::{UVec2, UVec4};
 use spirv_std::arch::IndexUnchecked;
 
-use super::brute::{Spheres, passes_over};
+use super::brute::{Spheres, ask, ask_entry, passes_over};
 use super::node::{Extent, Node, Tree, point};
 use super::slabs::{FIRST_OF_FOUR, Slabs, load};
 use crate::cull::bounds::Line;
 use crate::gpu::instructions::{highest_bit, lowest_bit};
 use crate::hit::Hit;
-use crate::precision::{intersect, intersect_at_once, is_lazy};
+use crate::precision::{intersect_at_once, is_lazy};
 use crate::ray::Ray;
 
 /// The nearest hit of `ray` on this rung among the spheres of a tree; of two equally near hits, the
@@ -38,6 +38,18 @@ pub fn nearest_hit_in_tree<S: Spheres + ?Sized>(
     walk::<false, S>(rung, ray, tree, spheres, &mut Work::default())
 }
 
+/// Any hit of `ray` among the spheres of a tree; its parameter need not be that of the hit.
+#[inline]
+#[must_use]
+pub fn any_hit_in_tree<S: Spheres + ?Sized>(
+    rung: u32,
+    ray: &Ray,
+    tree: Tree<'_>,
+    spheres: &S,
+) -> Hit {
+    walk::<true, S>(rung, ray, tree, spheres, &mut Work::default())
+}
+
 /// Whether `ray` hits any sphere of a tree.
 #[inline]
 #[must_use]
@@ -47,7 +59,7 @@ pub fn is_occluded_in_tree<S: Spheres + ?Sized>(
     tree: Tree<'_>,
     spheres: &S,
 ) -> bool {
-    walk::<true, S>(rung, ray, tree, spheres, &mut Work::default()).is_some()
+    any_hit_in_tree(rung, ray, tree, spheres).is_some()
 }
 
 /// How many tests a ray took.
@@ -233,7 +245,7 @@ fn walk<const ANY: bool, S: Spheres + ?Sized>(
                 };
                 // SAFETY: `index` is below the number of spheres.
                 let sphere = unsafe { spheres.sphere(index) };
-                let answer = intersect(rung, sphere, ray);
+                let answer = ask::<S>(rung, sphere, ray);
                 if (answer < t) | ((answer == t) & (index < hit_sphere)) {
                     (t, hit_sphere) = (answer, index);
                 }
@@ -299,7 +311,7 @@ fn walk<const ANY: bool, S: Spheres + ?Sized>(
         // SAFETY: `hit_sphere` is below the number of spheres.
         let sphere = unsafe { spheres.sphere(hit_sphere) };
         // This is a miss only where numbers are beyond the range that the bounds are derived for.
-        t = intersect(rung, sphere, ray);
+        t = ask_entry::<S>(rung, sphere, ray, &line, low, end);
     }
     if (t < ray.t_max) | (is_unasked & ANY) {
         Hit {

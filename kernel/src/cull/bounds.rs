@@ -12,25 +12,26 @@
 //! f = o − m d, and q = r² − f·f.
 //!
 //! **What floats are off by.** Operations may be fused or not; quotients are off by 2.5 units in
-//! the last place, roots by 4. Then m is off by 14u|o|/|d|, f by 17u|o|, and q by
+//! the last place, roots by 4. Then m is off by 14u|o|/|d|, and f by 17u|o|. The rungs from robust
+//! up use this formula or a better one, so none of them is farther off.
 //!
-//! > E = 34u|f||o| + 289u² o·o + 3u f·f + 3u r² ≤ 2⁻⁹ f·f + 2⁻²⁹ o·o + 3u r²,
+//! **Hit or miss.** So the feet of two of these computations are at most 34u|o| apart. Take the
+//! doubt
 //!
-//! because 2xy ≤ kx² + y²/k with k = 2¹⁰. The rungs from robust up use this formula or a better
-//! one, so none of them is farther off.
+//! > e = s (2r + s), s = 40u|o|,
 //!
-//! **Hit or miss.** Take the doubt e = 2⁻⁶ r² + 2⁻²⁸ o·o. Where q < −e here, all of these rungs
-//! have q < 0; where q > e here, all of them have q > 0. For E is at most e/2 then, because
-//! f·f = r² − q.
+//! which is (r + s)² − r². Where q + e < 0 here, all of these rungs have q < 0; where q − e > 0
+//! here, all of them have q > 0. |o| is taken for the sum of its components' magnitudes, which is
+//! larger.
 //!
-//! **Where the ray enters.** Where q > e:
+//! **Where the ray enters.** Where q − e > 0:
 //!
-//! - |f| ≤ r, √q ≥ r/8 and √q ≥ 2⁻¹⁴|o|. So √q is off by E/√q ≤ 273u|o| + 48u r, here and in the
-//!   rung together.
-//! - To that come the errors of m, of the root and of the sum, and robust's own 16u max(|o|, r) and
-//!   8u|o| for its c and b.
-//! - Together, the parameter at which the ray enters, m − √(q/a), is the same to within 512u(|o| +
-//!   r)/|d| for all of these rungs; and |o| ≤ m|d| + r.
+//! - Each of these rungs has a q between q − e and q + e, but for what is relative in r² and f·f.
+//!   Where that counts, the origin is deep inside the sphere, and it changes √q by 16u r.
+//! - To that come the errors of m, of the roots and of the sums, and robust's own 16u max(|o|, r)
+//!   and 8u|o| for its c and b.
+//! - Together, the parameter at which the ray enters is for all of these rungs between m − √((q +
+//!   e)/a) and m − √((q − e)/a), to within 64u(|m| + 2r); and |o| ≤ m|d| + r.
 //!
 //! **Behind the ray.** A sphere is behind its ray for certain where o·d < 0 and c = o·o − r² > 32u
 //! (o·o + r²). A hit would need an o·d of the size of its own error. There the foot is off by only
@@ -43,21 +44,15 @@ use crate::lane::{Lane, Lane3};
 use crate::ray::Ray;
 use crate::sphere::Sphere;
 
-/// The bounds are m − √(q/a) plus and minus `OFF` |m| + [`OFF_BY_RADIUS`] r. This is 512u.
-pub const OFF: f32 = 1.0 / (1 << 15) as f32;
-/// The share of r in the distance of the bounds from m − √(q/a), see [`OFF`]: 1024u.
-pub const OFF_BY_RADIUS: f32 = 1.0 / (1 << 14) as f32;
+/// The bounds are as far as `OFF` |m| + [`OFF_BY_RADIUS`] r beyond m − √((q ± e)/a). This is 64u.
+pub const OFF: f32 = 1.0 / (1 << 18) as f32;
+/// The share of r in that, see [`OFF`]: 128u.
+pub const OFF_BY_RADIUS: f32 = 1.0 / (1 << 17) as f32;
+/// What the feet of two computations differ by, and what is relative in their squares, is less than
+/// this times |o|: 40u.
+const OFF_FOOT: f32 = 40.0 / (1 << 24) as f32;
 /// An origin is outside for certain where o·o times this is more than r²: 1 − 64u.
 pub const OUTSIDE: f32 = 1.0 - 1.0 / (1 << 18) as f32;
-
-/// The doubt e about q, from o·o and r². The constant that is added keeps squares decisive only
-/// where they are large enough for their errors to be relative.
-#[inline(always)]
-#[must_use]
-pub fn doubt<L: Lane>(oo: L, rr: L) -> L {
-    let of = |value: f32| oo.splat(value);
-    oo * of(1.0 / (1 << 28) as f32) + (rr * of(1.0 / (1 << 6) as f32) + of(1e-30))
-}
 
 /// What is the same for a ray from sphere to sphere, in lanes.
 #[derive(Clone, Copy, Debug)]
@@ -100,13 +95,18 @@ impl<L: Lane> Aim<L> {
         let middle = b * self.inverse;
         let foot = o.minus_scaled(self.direction, middle);
         let q = rr - foot.dot(foot);
-        let doubt = doubt(oo, rr);
-        let enters = middle - (q * self.inverse).sqrt();
+        let apart = (o.x.abs() + o.y.abs() + o.z.abs()) * oo.splat(OFF_FOOT);
+        // The constant keeps squares decisive only where they are large enough for their errors to
+        // be relative.
+        let doubt = apart * (r + r + apart) + oo.splat(1e-30);
+        let (least, most) = (q - doubt, q + doubt);
         let off = middle.abs() * oo.splat(OFF) + r * oo.splat(OFF_BY_RADIUS);
-        let (low, high) = (enters - off, enters + off);
+        let low = middle - (most * self.inverse).sqrt() - off;
+        let high = middle - (least * self.inverse).sqrt() + off;
+        let zero = oo.splat(0.0);
         let is_behind = b.simd_lt(self.behind) & (oo * oo.splat(OUTSIDE)).simd_gt(rr);
-        let misses = q.simd_lt(-doubt) | is_behind;
-        let hits = q.simd_gt(doubt) & low.simd_ge(self.start);
+        let misses = most.simd_lt(zero) | is_behind;
+        let hits = least.simd_gt(zero) & low.simd_ge(self.start);
         (misses, hits, low, high)
     }
 }

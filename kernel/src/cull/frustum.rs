@@ -8,7 +8,7 @@
 //!
 //! Let o = C − O and s = o·n, with n of unit length and pointing inward. A sphere is beyond a
 //! plane, and none of the rays meets it, where its centre is beyond the plane by more than its
-//! radius: where s < 0 and s² > r².
+//! radius: where s < −r.
 //!
 //! In 32-bit floats, with u = 2⁻²⁴:
 //!
@@ -19,20 +19,28 @@
 //! - Then n is off by 29u, of which 12u are a device's quotient and root, and the terms of every
 //!   direction inside are at most 17 times as long as the direction itself, so that rays leave the
 //!   plane by 51u|o|.
-//! - Together that is 168u o·o of s².
-//! - A rung may find a hit that exact arithmetic misses by 24u (o·o + r²), as
-//!   [`slabs`](crate::accel::slabs) says.
+//! - Together s is off by 90u|o|.
+//! - From robust up, a rung's hit is on a line that the centre is at most r + 19u(|o| + r) away
+//!   from: what puts the foot of the perpendicular off by 17u|o|.
 //!
-//! So 256u (o·o + r²) is added to r², and no rung's hit is lost.
+//! So 128u(|o| + r) is added to r, and none of these rungs' hits is lost. |o| is taken for the sum
+//! of its components' magnitudes, which is larger.
+//!
+//! [`textbook`](crate::precision::textbook) may find a hit that exact arithmetic misses by
+//! 24u (o·o + r²), so that a sphere far away is much larger for it than for the others. For it,
+//! 256u (o·o + r²) is added to r², of which 168u are those 90u|o| of s.
 
 use glam::{Vec2, Vec3, Vec4};
 
 use crate::camera::Camera;
 use crate::lane::{Lane, Lane3};
+use crate::precision::Rung;
 use crate::sphere::Sphere;
 
+/// 128u.
+const SLACK: f32 = 1.0 / (1 << 17) as f32;
 /// 256u.
-const SLACK: f32 = 1.0 / (1 << 16) as f32;
+const SLACK_OF_SQUARES: f32 = 1.0 / (1 << 16) as f32;
 
 /// Four planes around the rays through a rectangle of the film.
 #[derive(Clone, Copy, Debug)]
@@ -146,16 +154,22 @@ impl Frustum {
         }
     }
 
-    /// Whether it is certain that none of the rays meets the sphere, on any rung.
+    /// Whether it is certain that none of the rays meets the sphere on this rung, a value of
+    /// [`Rung::to_u32`].
     #[inline]
     #[must_use]
-    pub fn misses(&self, sphere: Sphere) -> bool {
+    pub fn misses(&self, rung: u32, sphere: Sphere) -> bool {
         let o = sphere.center() - self.eye;
-        let (oo, rr) = (o.dot(o), sphere.radius() * sphere.radius());
         let across = least(o.dot(self.left.0), o.dot(self.right.0));
         let upwards = least(o.dot(self.below.0), o.dot(self.above.0));
         let farthest = least(across, upwards);
-        (farthest < 0.0) & (farthest * farthest > rr + SLACK * (oo + rr))
+        if rung == Rung::Textbook.to_u32() {
+            let (oo, rr) = (o.dot(o), sphere.radius() * sphere.radius());
+            (farthest < 0.0) & (farthest * farthest > rr + SLACK_OF_SQUARES * (oo + rr))
+        } else {
+            let (size, r) = (o.abs().element_sum(), sphere.radius().abs());
+            farthest < -(r + SLACK * (size + r))
+        }
     }
 }
 

@@ -3,21 +3,26 @@
 //!
 //! Bindings are in descriptor set 0, in the order of the parameters. Buffers are as long as
 //! the work; threads beyond it return.
+//!
+//! Those that render, and those that trace rays in a tree, run once on a rung, or twice for
+//! certified: first with the rung [`DEFERRING`], then on the rung itself with `is_second` 1, for
+//! what the first launch deferred and put into a list.
 
 use glam::{UVec2, UVec3, Vec4};
-use spirv_std::arch::IndexUnchecked;
+use spirv_std::arch::{IndexUnchecked, workgroup_memory_barrier_with_group_sync};
 use spirv_std::spirv;
 
 use crate::accel::brute::{is_occluded, nearest_hit_in};
 use crate::accel::node::{Node, Tree};
-use crate::accel::tiles::{LISTED, Shared, render_group};
+use crate::accel::tiles::{LISTED, Shared, columns, from_the_middle, render_group};
 use crate::accel::traversal::OneByOne;
-use crate::accel::walk::{is_occluded_in_tree, nearest_hit_in_tree};
+use crate::accel::walk::{any_hit_in_tree, nearest_hit_in_tree};
 use crate::film::TILE;
+use crate::gpu::deferred;
 use crate::material::optics::{Fresnel, Incidence};
 use crate::path::{Scenery, trace_pixel};
 use crate::pixel::render_pixel;
-use crate::precision::intersect;
+use crate::precision::{DEFERRING, intersect};
 use crate::probe::canary::{Operands, Outcome, sing};
 #[cfg(any(not(target_arch = "spirv"), feature = "f64"))]
 use crate::probe::canary::{WideOutcome, sing_wide};
@@ -36,34 +41,75 @@ use crate::{
 #[spirv(compute(threads(8, 16), entry_point_name = "render"))]
 pub fn render(
     #[spirv(global_invocation_id)] id: UVec3,
+    #[spirv(local_invocation_index)] local: u32,
+    #[spirv(workgroup_id)] group: UVec3,
+    #[spirv(num_workgroups)] groups: UVec3,
     #[spirv(spec_constant(id = 0, default = 0))] shading: u32,
     #[spirv(spec_constant(id = 1, default = 1))] rung: u32,
     #[spirv(spec_constant(id = 4, default = 0))] has_tree: u32,
+    #[spirv(spec_constant(id = 5, default = 0))] is_second: u32,
     #[spirv(uniform, descriptor_set = 0, binding = 0)] launch: &Launch,
     #[spirv(storage_buffer, descriptor_set = 0, binding = 1)] spheres: &[Sphere],
     #[spirv(storage_buffer, descriptor_set = 0, binding = 2)] material_ids: &[u32],
     #[spirv(storage_buffer, descriptor_set = 0, binding = 3)] materials: &[Material],
     #[spirv(storage_buffer, descriptor_set = 0, binding = 4)] nodes: &[Node],
     #[spirv(storage_buffer, descriptor_set = 0, binding = 5)] pixels: &mut [Pixel],
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 6)] list: &mut [u32],
 ) {
-    let pixel = UVec2::new(id.x, id.y);
-    if pixel.x < launch.tile_size.x && pixel.y < launch.tile_size.y {
-        let index = (pixel.y * launch.tile_size.x + pixel.x) as usize;
-        if index < pixels.len() {
-            // SAFETY: as just asked; and the host binds a tree's nodes.
-            unsafe {
-                *pixels.index_unchecked_mut(index) = render_pixel(
+    // SAFETY: the host binds a tree's nodes.
+    let tree = unsafe { Tree::of_unchecked(nodes) };
+    let width = launch.tile_size.x;
+    if is_second == 1 {
+        let (count, step) = (deferred::count(list), groups.x * 128);
+        let mut place = local * groups.x + group.x;
+        while place < count {
+            let index = deferred::entry(list, place);
+            let pixel = UVec2::new(index % width, index / width);
+            let index = index as usize;
+            if index < pixels.len() {
+                // SAFETY: as just asked.
+                let previous = unsafe { pixels.index_unchecked(index) };
+                let pixel = render_pixel(
                     shading,
                     rung,
                     has_tree,
                     launch,
-                    Tree::of_unchecked(nodes),
+                    tree,
                     spheres,
                     material_ids,
                     materials,
                     pixel,
-                    pixels.index_unchecked(index),
+                    previous,
                 );
+                // SAFETY: as above.
+                unsafe { *pixels.index_unchecked_mut(index) = pixel };
+            }
+            place += step;
+        }
+        return;
+    }
+    let pixel = UVec2::new(id.x, id.y);
+    if pixel.x < width && pixel.y < launch.tile_size.y {
+        let index = pixel.y * width + pixel.x;
+        if (index as usize) < pixels.len() {
+            // SAFETY: as just asked.
+            let previous = unsafe { pixels.index_unchecked(index as usize) };
+            let pixel = render_pixel(
+                shading,
+                rung,
+                has_tree,
+                launch,
+                tree,
+                spheres,
+                material_ids,
+                materials,
+                pixel,
+                previous,
+            );
+            // SAFETY: as above.
+            unsafe { *pixels.index_unchecked_mut(index as usize) = pixel };
+            if rung == DEFERRING && pixel.is_deferred() {
+                deferred::defer(list, index);
             }
         }
     }
@@ -74,16 +120,20 @@ pub fn render(
 pub fn render_by_tiles(
     #[spirv(local_invocation_id)] local: UVec3,
     #[spirv(workgroup_id)] group: UVec3,
+    #[spirv(num_workgroups)] groups: UVec3,
     #[spirv(spec_constant(id = 0, default = 0))] shading: u32,
     #[spirv(spec_constant(id = 1, default = 1))] rung: u32,
+    #[spirv(spec_constant(id = 5, default = 0))] is_second: u32,
     #[spirv(uniform, descriptor_set = 0, binding = 0)] launch: &Launch,
     #[spirv(storage_buffer, descriptor_set = 0, binding = 1)] spheres: &[Sphere],
     #[spirv(storage_buffer, descriptor_set = 0, binding = 2)] material_ids: &[u32],
     #[spirv(storage_buffer, descriptor_set = 0, binding = 3)] materials: &[Material],
     #[spirv(storage_buffer, descriptor_set = 0, binding = 4)] pixels: &mut [Pixel],
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 5)] tiles: &mut [u32],
     #[spirv(workgroup)] planes: &mut [Vec4; 4],
     #[spirv(workgroup)] rows: &mut [f32; TILE as usize],
     #[spirv(workgroup)] listed: &mut u32,
+    #[spirv(workgroup)] deferred_here: &mut u32,
     #[spirv(workgroup)] list: &mut [u32; LISTED],
     #[spirv(workgroup)] listed_spheres: &mut [Sphere; LISTED],
     #[spirv(workgroup)] cones: &mut [Vec4; LISTED],
@@ -92,20 +142,51 @@ pub fn render_by_tiles(
         planes,
         rows,
         listed,
+        deferred: deferred_here,
         list,
         spheres: listed_spheres,
         cones,
     };
+    let local = local.truncate();
+    if is_second == 1 {
+        let (count, columns) = (deferred::count(tiles), columns(launch));
+        let mut place = group.x;
+        while place < count {
+            let tile = deferred::entry(tiles, place);
+            let tile = UVec2::new(tile % columns, tile / columns);
+            render_group(
+                tile,
+                local,
+                shading,
+                rung,
+                is_second,
+                launch,
+                spheres,
+                material_ids,
+                materials,
+                pixels,
+                tiles,
+                &mut shared,
+            );
+            place += groups.x;
+            // The next tile overwrites what threads share.
+            workgroup_memory_barrier_with_group_sync();
+        }
+        return;
+    }
+    let tile = UVec2::new(group.x, from_the_middle(group.y, launch.tile_size.y));
     render_group(
-        group.truncate(),
-        local.truncate(),
+        tile,
+        local,
         shading,
         rung,
+        is_second,
         launch,
         spheres,
         material_ids,
         materials,
         pixels,
+        tiles,
         &mut shared,
     );
 }
@@ -183,16 +264,35 @@ pub fn trace_rays_in_tree(
     #[spirv(global_invocation_id)] id: UVec3,
     #[spirv(num_workgroups)] groups: UVec3,
     #[spirv(spec_constant(id = 1, default = 1))] rung: u32,
+    #[spirv(spec_constant(id = 5, default = 0))] is_second: u32,
     #[spirv(storage_buffer, descriptor_set = 0, binding = 0)] rays: &[Ray],
     #[spirv(storage_buffer, descriptor_set = 0, binding = 1)] spheres: &[Sphere],
     #[spirv(storage_buffer, descriptor_set = 0, binding = 2)] nodes: &[Node],
     #[spirv(storage_buffer, descriptor_set = 0, binding = 3)] hits: &mut [Hit],
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 4)] list: &mut [u32],
 ) {
-    let index = (id.y * groups.x * 64 + id.x) as usize;
-    if index < rays.len() && index < hits.len() {
-        // SAFETY: the host binds a tree's nodes.
-        let tree = unsafe { Tree::of_unchecked(nodes) };
-        hits[index] = nearest_hit_in_tree(rung, &rays[index], tree, spheres);
+    // SAFETY: the host binds a tree's nodes.
+    let tree = unsafe { Tree::of_unchecked(nodes) };
+    if is_second == 1 {
+        let (count, step) = (deferred::count(list), groups.x * 64);
+        let mut place = id.x % 64 * groups.x + id.x / 64;
+        while place < count {
+            let index = deferred::entry(list, place) as usize;
+            if index < rays.len() && index < hits.len() {
+                hits[index] = nearest_hit_in_tree(rung, &rays[index], tree, spheres);
+            }
+            place += step;
+        }
+        return;
+    }
+    let index = id.y * groups.x * 64 + id.x;
+    let place = index as usize;
+    if place < rays.len() && place < hits.len() {
+        let hit = nearest_hit_in_tree(rung, &rays[place], tree, spheres);
+        hits[place] = hit;
+        if rung == DEFERRING && hit.is_deferred() {
+            deferred::defer(list, index);
+        }
     }
 }
 
@@ -218,16 +318,37 @@ pub fn occlude_rays_in_tree(
     #[spirv(global_invocation_id)] id: UVec3,
     #[spirv(num_workgroups)] groups: UVec3,
     #[spirv(spec_constant(id = 1, default = 1))] rung: u32,
+    #[spirv(spec_constant(id = 5, default = 0))] is_second: u32,
     #[spirv(storage_buffer, descriptor_set = 0, binding = 0)] rays: &[Ray],
     #[spirv(storage_buffer, descriptor_set = 0, binding = 1)] spheres: &[Sphere],
     #[spirv(storage_buffer, descriptor_set = 0, binding = 2)] nodes: &[Node],
     #[spirv(storage_buffer, descriptor_set = 0, binding = 3)] occluded: &mut [u32],
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 4)] list: &mut [u32],
 ) {
-    let index = (id.y * groups.x * 64 + id.x) as usize;
-    if index < rays.len() && index < occluded.len() {
-        // SAFETY: the host binds a tree's nodes.
-        let tree = unsafe { Tree::of_unchecked(nodes) };
-        occluded[index] = u32::from(is_occluded_in_tree(rung, &rays[index], tree, spheres));
+    // SAFETY: the host binds a tree's nodes.
+    let tree = unsafe { Tree::of_unchecked(nodes) };
+    if is_second == 1 {
+        let (count, step) = (deferred::count(list), groups.x * 64);
+        let mut place = id.x % 64 * groups.x + id.x / 64;
+        while place < count {
+            let index = deferred::entry(list, place) as usize;
+            if index < rays.len() && index < occluded.len() {
+                occluded[index] = any_hit_in_tree(rung, &rays[index], tree, spheres)
+                    .is_some()
+                    .into();
+            }
+            place += step;
+        }
+        return;
+    }
+    let index = id.y * groups.x * 64 + id.x;
+    let place = index as usize;
+    if place < rays.len() && place < occluded.len() {
+        let hit = any_hit_in_tree(rung, &rays[place], tree, spheres);
+        occluded[place] = hit.is_some().into();
+        if rung == DEFERRING && hit.is_deferred() {
+            deferred::defer(list, index);
+        }
     }
 }
 

@@ -101,7 +101,12 @@ macro_rules! rungs {
         #[inline]
         #[must_use]
         pub fn widening(rung: u32, far: Vec3, smallest_radius: f32) -> f32 {
-            $(if rung == $value { $name::widening(far, smallest_radius) } else)* { 0.0 }
+            $(if rung == $value { $name::widening(far, smallest_radius) } else)*
+            if rung == DEFERRING {
+                Certified::widening(far, smallest_radius)
+            } else {
+                0.0
+            }
         }
 
         /// Whether the rung is so slow that walks evaluate it only for the nearest sphere, when
@@ -158,6 +163,39 @@ rungs! {
     /// [`Certified`].
     lazily Certified = 4, "certified", "The exact answer, rounded once: few digits with a bound on their error, more only where those cannot decide", ErrorTermsAtLeast;
 }
+
+/// A value beside those of [`Rung::to_u32`]: the first steps of [`Certified`], for the first of two
+/// launches. Where these do not decide, the answer is [`Hit::DEFERRED_T`], which is before every
+/// other, so that it ends a search; a second launch on the whole rung answers those rays. The last
+/// steps decide next to no ray, but they would take registers from all.
+pub const DEFERRING: u32 = Rung::ALL.len() as u32;
+
+/// [`intersect`], or the first steps of certified if the rung is [`DEFERRING`].
+#[inline]
+#[must_use]
+pub fn intersect_or_defer(rung: u32, sphere: Sphere, ray: &Ray) -> f32 {
+    if rung == DEFERRING {
+        certified::intersect_or_defer(sphere, ray)
+    } else {
+        intersect(rung, sphere, ray)
+    }
+}
+
+/// [`intersect_or_defer`] for a ray that certainly enters the sphere, first and within its interval
+/// but for the end: between two parameters.
+#[inline]
+#[must_use]
+pub fn entry_or_defer(rung: u32, sphere: Sphere, ray: &Ray, low: f32, high: f32) -> f32 {
+    if rung == DEFERRING {
+        certified::entry_or_defer(sphere, ray, low + 0.5 * (high - low))
+    } else {
+        intersect(rung, sphere, ray)
+    }
+}
+
+/// The number of the specialisation constant that is 1 in the second of two launches, which does
+/// nothing but what the first [deferred](DEFERRING).
+pub const SECOND_SPEC_ID: u32 = 5;
 
 impl Rung {
     /// The number of the specialisation constant that holds the rung.

@@ -33,6 +33,12 @@ pub const CALLS: &[Call] = &[
     Call::new("f32 as spherule_kernel::lane::Lane::are_all", |s| {
         seen(<f32 as spherule_kernel::lane::Lane>::are_all(s.draw()))
     }),
+    Call::new("f32 as spherule_kernel::lane::Lane::mul_strict", |s| {
+        seen(<f32 as spherule_kernel::lane::Lane>::mul_strict(
+            s.draw(),
+            s.draw(),
+        ))
+    }),
     Call::new("f32 as spherule_kernel::lane::Lane::simd_ge", |s| {
         seen(<f32 as spherule_kernel::lane::Lane>::simd_ge(
             s.draw(),
@@ -75,12 +81,6 @@ pub const CALLS: &[Call] = &[
     Call::new("f32 as spherule_kernel::lane::Lane::to_single", |s| {
         seen(<f32 as spherule_kernel::lane::Lane>::to_single(s.draw()))
     }),
-    Call::new("f32 as spherule_kernel::lane::Word::mul_strict", |s| {
-        seen(<f32 as spherule_kernel::lane::Word>::mul_strict(
-            s.draw(),
-            s.draw(),
-        ))
-    }),
     Call::new("f64 as spherule_kernel::lane::Lane::abs", |s| {
         seen(<f64 as spherule_kernel::lane::Lane>::abs(s.draw()))
     }),
@@ -92,6 +92,12 @@ pub const CALLS: &[Call] = &[
     }),
     Call::new("f64 as spherule_kernel::lane::Lane::are_all", |s| {
         seen(<f64 as spherule_kernel::lane::Lane>::are_all(s.draw()))
+    }),
+    Call::new("f64 as spherule_kernel::lane::Lane::mul_strict", |s| {
+        seen(<f64 as spherule_kernel::lane::Lane>::mul_strict(
+            s.draw(),
+            s.draw(),
+        ))
     }),
     Call::new("f64 as spherule_kernel::lane::Lane::simd_ge", |s| {
         seen(<f64 as spherule_kernel::lane::Lane>::simd_ge(
@@ -134,12 +140,6 @@ pub const CALLS: &[Call] = &[
     }),
     Call::new("f64 as spherule_kernel::lane::Lane::to_single", |s| {
         seen(<f64 as spherule_kernel::lane::Lane>::to_single(s.draw()))
-    }),
-    Call::new("f64 as spherule_kernel::lane::Word::mul_strict", |s| {
-        seen(<f64 as spherule_kernel::lane::Word>::mul_strict(
-            s.draw(),
-            s.draw(),
-        ))
     }),
     Call::new("spherule::accel::build::build", |s| {
         seen(spherule::accel::build::build(
@@ -752,6 +752,10 @@ pub const CALLS: &[Call] = &[
     .on_gpu(),
     Call::new("spherule::device::rung::module", |s| {
         seen(spherule::device::rung::module(s.gpu(), s.draw()))
+    })
+    .on_gpu(),
+    Call::new("spherule::device::rung::modules", |s| {
+        seen(spherule::device::rung::modules(s.gpu(), s.draw()))
     })
     .on_gpu(),
     Call::new("spherule::device::rung::uses_f64", |s| {
@@ -1423,6 +1427,30 @@ pub const CALLS: &[Call] = &[
             &s.many()[..],
         ))
     }),
+    Call::new(
+        "spherule_kernel::accel::brute::nearest_hit_by_bounds#0",
+        |s| {
+            seen(spherule_kernel::accel::brute::nearest_hit_by_bounds(
+                s.draw(),
+                &s.draw(),
+                &s.many::<spherule_kernel::Sphere>()[..],
+                s.draw(),
+                s.few(),
+            ))
+        },
+    ),
+    Call::new(
+        "spherule_kernel::accel::brute::nearest_hit_by_bounds#1",
+        |s| {
+            seen(spherule_kernel::accel::brute::nearest_hit_by_bounds(
+                s.draw(),
+                &s.draw(),
+                &s.draw::<odd::OddMovingSpheres>().get(),
+                s.draw(),
+                s.few(),
+            ))
+        },
+    ),
     Call::new("spherule_kernel::accel::brute::nearest_hit_in#0", |s| {
         seen(spherule_kernel::accel::brute::nearest_hit_in(
             s.draw(),
@@ -1519,6 +1547,22 @@ pub const CALLS: &[Call] = &[
             seen(<spherule_kernel::accel::traversal::OneByOne as spherule_kernel::accel::traversal::Traversal>::nearest_hit(&s.draw::<odd::OddOneByOne>().get(), &s.draw(), &s.draw::<odd::OddMovingSpheres>().get()))
         },
     ),
+    Call::new("spherule_kernel::accel::walk::any_hit_in_tree#0", |s| {
+        seen(spherule_kernel::accel::walk::any_hit_in_tree(
+            s.draw(),
+            &s.draw(),
+            s.draw::<odd::OddTree>().get(),
+            &s.many::<spherule_kernel::Sphere>()[..],
+        ))
+    }),
+    Call::new("spherule_kernel::accel::walk::any_hit_in_tree#1", |s| {
+        seen(spherule_kernel::accel::walk::any_hit_in_tree(
+            s.draw(),
+            &s.draw(),
+            s.draw::<odd::OddTree>().get(),
+            &s.draw::<odd::OddMovingSpheres>().get(),
+        ))
+    }),
     Call::new("spherule_kernel::accel::walk::is_occluded_in_tree#0", |s| {
         seen(spherule_kernel::accel::walk::is_occluded_in_tree(
             s.draw(),
@@ -1839,12 +1883,6 @@ pub const CALLS: &[Call] = &[
     Call::new("spherule_kernel::cull::bounds::Line::of", |s| {
         seen(spherule_kernel::cull::bounds::Line::of(&s.draw()))
     }),
-    Call::new("spherule_kernel::cull::bounds::doubt", |s| {
-        seen(spherule_kernel::cull::bounds::doubt::<f32>(
-            s.draw(),
-            s.draw(),
-        ))
-    }),
     Call::new("spherule_kernel::cull::cone::Cone::from_vec4", |s| {
         seen(spherule_kernel::cull::cone::Cone::from_vec4(s.draw()))
     }),
@@ -1901,6 +1939,7 @@ pub const CALLS: &[Call] = &[
     Call::new("spherule_kernel::cull::frustum::Frustum::misses", |s| {
         seen(spherule_kernel::cull::frustum::Frustum::misses(
             &s.draw(),
+            s.draw(),
             s.draw(),
         ))
     }),
@@ -2045,8 +2084,14 @@ pub const CALLS: &[Call] = &[
     Call::new("spherule_kernel::film::Pixel::color", |s| {
         seen(spherule_kernel::film::Pixel::color(&s.draw()))
     }),
+    Call::new("spherule_kernel::film::Pixel::deferred", |s| {
+        seen(spherule_kernel::film::Pixel::deferred(&s.draw()))
+    }),
     Call::new("spherule_kernel::film::Pixel::depth", |s| {
         seen(spherule_kernel::film::Pixel::depth(&s.draw()))
+    }),
+    Call::new("spherule_kernel::film::Pixel::is_deferred", |s| {
+        seen(spherule_kernel::film::Pixel::is_deferred(&s.draw()))
     }),
     Call::new("spherule_kernel::film::Pixel::is_hit", |s| {
         seen(spherule_kernel::film::Pixel::is_hit(&s.draw()))
@@ -2121,6 +2166,9 @@ pub const CALLS: &[Call] = &[
     }),
     Call::new("spherule_kernel::hit::Hit as Default", |_| {
         seen(<spherule_kernel::hit::Hit as Default>::default())
+    }),
+    Call::new("spherule_kernel::hit::Hit::is_deferred", |s| {
+        seen(spherule_kernel::hit::Hit::is_deferred(&s.draw()))
     }),
     Call::new("spherule_kernel::hit::Hit::is_some", |s| {
         seen(spherule_kernel::hit::Hit::is_some(&s.draw()))
@@ -2793,9 +2841,41 @@ pub const CALLS: &[Call] = &[
         },
     ),
     Call::new(
+        "spherule_kernel::precision::certified::corrected::Residual::correct",
+        |s| {
+            seen(
+                spherule_kernel::precision::certified::corrected::Residual::<f32>::correct(
+                    s.draw(),
+                    s.draw(),
+                    s.draw(),
+                    s.draw(),
+                ),
+            )
+        },
+    ),
+    Call::new(
+        "spherule_kernel::precision::certified::entry_or_defer",
+        |s| {
+            seen(spherule_kernel::precision::certified::entry_or_defer(
+                s.draw(),
+                &s.draw(),
+                s.draw(),
+            ))
+        },
+    ),
+    Call::new(
         "spherule_kernel::precision::certified::intersect_in_single",
         |s| {
             seen(spherule_kernel::precision::certified::intersect_in_single(
+                s.draw(),
+                &s.draw(),
+            ))
+        },
+    ),
+    Call::new(
+        "spherule_kernel::precision::certified::intersect_or_defer",
+        |s| {
+            seen(spherule_kernel::precision::certified::intersect_or_defer(
                 s.draw(),
                 &s.draw(),
             ))
@@ -2816,6 +2896,19 @@ pub const CALLS: &[Call] = &[
             seen(
                 spherule_kernel::precision::certified::wide::WideRay::<f32>::intersect(
                     &s.draw(),
+                    s.draw(),
+                    s.draw(),
+                ),
+            )
+        },
+    ),
+    Call::new(
+        "spherule_kernel::precision::certified::wide::WideRay::residual",
+        |s| {
+            seen(
+                spherule_kernel::precision::certified::wide::WideRay::<f32>::residual(
+                    &s.draw(),
+                    s.draw(),
                     s.draw(),
                     s.draw(),
                 ),
@@ -2916,6 +3009,15 @@ pub const CALLS: &[Call] = &[
             s.draw(),
         ))
     }),
+    Call::new("spherule_kernel::precision::entry_or_defer", |s| {
+        seen(spherule_kernel::precision::entry_or_defer(
+            s.draw(),
+            s.draw(),
+            &s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
     Call::new("spherule_kernel::precision::intersect", |s| {
         seen(spherule_kernel::precision::intersect(
             s.draw(),
@@ -2925,6 +3027,13 @@ pub const CALLS: &[Call] = &[
     }),
     Call::new("spherule_kernel::precision::intersect_at_once", |s| {
         seen(spherule_kernel::precision::intersect_at_once(
+            s.draw(),
+            s.draw(),
+            &s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::precision::intersect_or_defer", |s| {
+        seen(spherule_kernel::precision::intersect_or_defer(
             s.draw(),
             s.draw(),
             &s.draw(),
@@ -3954,6 +4063,15 @@ impl Odd for spherule_kernel::precision::Rung {
             2 => spherule_kernel::precision::Rung::Compensated,
             3 => spherule_kernel::precision::Rung::Double,
             _ => spherule_kernel::precision::Rung::Certified,
+        }
+    }
+}
+
+impl Odd for spherule_kernel::precision::certified::corrected::Residual<f32> {
+    fn odd(s: &mut Source) -> Self {
+        spherule_kernel::precision::certified::corrected::Residual::<f32> {
+            g: Odd::odd(s),
+            h: Odd::odd(s),
         }
     }
 }

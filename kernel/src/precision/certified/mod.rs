@@ -6,8 +6,10 @@
 //! the same, bit for bit. Each step is evaluated only where the ones before cannot decide, after J.
 //! R. Shewchuk's adaptive predicates (Discrete Comput. Geom. 18 (1997) 305):
 //!
-//! 1. With 64-bit floats, two steps:
-//!    - the formulas of [`double`](super::double) with bounds on their errors ([`wide`]);
+//! 1. With 64-bit floats, three steps:
+//!    - where bounds in 32-bit floats say for certain that the ray enters, and about where: a root
+//!      in 32-bit floats, corrected by what it leaves in 64-bit floats ([`corrected`]);
+//!    - otherwise the formulas of [`double`](super::double) with bounds on their errors ([`wide`]);
 //!    - the midpoint between two floats in pairs of 64-bit floats (`midpoint.rs`), for hits that
 //!      the former leaves there, one in 2¹⁸ or so.
 //!
@@ -21,9 +23,14 @@
 //! 2. All coefficients as sums without loss (`distilled.rs`). Where that does not round a root for
 //!    certain, the midpoint's place on the line does, by the exact sign of the quadratic there.
 //!
+//! On a GPU the last steps would take registers from every ray, though next to none needs them. So
+//! there a first launch has the first steps alone ([`DEFERRING`](super::DEFERRING)), and lists the
+//! rays that they leave open; a second, small launch answers those.
+//!
 //! No step sees more than floats can hold: components must be at least 2⁻⁷⁵ of the largest length,
 //! and t must be a normal float.
 
+pub mod corrected;
 mod distilled;
 mod filter;
 #[cfg(any(not(target_arch = "spirv"), feature = "f64"))]
@@ -100,6 +107,68 @@ pub fn intersect_with_stage(sphere: Sphere, ray: &Ray) -> (f32, Stage) {
     }
     let pairs = Quadratic::of(sphere, ray);
     (intersect_distilled(&pairs, ray), Stage::Distilled)
+}
+
+/// The parameter of the hit or [`Hit::NONE_T`], if one step in 64-bit floats decides;
+/// [`Hit::DEFERRED_T`] otherwise.
+#[cfg(any(not(target_arch = "spirv"), feature = "f64"))]
+#[inline]
+#[must_use]
+pub fn intersect_or_defer(sphere: Sphere, ray: &Ray) -> f32 {
+    let center = Lane3::of(sphere.center()).widened();
+    let answer = wide::WideRay::of(ray).intersect(center, f64::from(sphere.radius()));
+    if answer.is_certain {
+        answer.t as f32
+    } else {
+        Hit::DEFERRED_T
+    }
+}
+
+/// [`intersect_or_defer`] for a ray that certainly enters the sphere, first and within its interval
+/// but for the end: from a guess of where.
+#[cfg(any(not(target_arch = "spirv"), feature = "f64"))]
+#[inline]
+#[must_use]
+pub fn entry_or_defer(sphere: Sphere, ray: &Ray, guess: f32) -> f32 {
+    let corrected = wide::WideRay::of(ray).corrected(ray, sphere, guess);
+    if !(corrected.is_certain & corrected.is_near) {
+        Hit::DEFERRED_T
+    } else if corrected.t < ray.t_max {
+        corrected.t
+    } else {
+        Hit::NONE_T
+    }
+}
+
+/// [`intersect_or_defer`]; the guess is of no use to pairs of floats.
+#[cfg(all(target_arch = "spirv", not(feature = "f64")))]
+#[inline]
+#[must_use]
+pub fn entry_or_defer(sphere: Sphere, ray: &Ray, _: f32) -> f32 {
+    intersect_or_defer(sphere, ray)
+}
+
+/// The parameter of the hit or [`Hit::NONE_T`], if the filter and pairs of floats decide;
+/// [`Hit::DEFERRED_T`] otherwise.
+#[cfg(all(target_arch = "spirv", not(feature = "f64")))]
+#[inline]
+#[must_use]
+pub fn intersect_or_defer(sphere: Sphere, ray: &Ray) -> f32 {
+    if filter::misses_for_certain(sphere, ray) {
+        return Hit::NONE_T;
+    }
+    let pairs = Quadratic::of(sphere, ray);
+    if pairs.misses_for_certain() {
+        return Hit::NONE_T;
+    }
+    if pairs.meets_for_certain() {
+        let roots = Root::both(&pairs, pairs.size_error(), pairs.c_error());
+        let (t, is_certain) = choose(&pairs, roots, ray);
+        if is_certain {
+            return t;
+        }
+    }
+    Hit::DEFERRED_T
 }
 
 /// As [`intersect_with_stage`], in 32-bit floats alone.
