@@ -308,7 +308,7 @@ fn every_pixel_is_written() {
                 .kernel(
                     &module,
                     "render",
-                    &[Uniform, Read, Read, Read, Read, ReadWrite],
+                    &[Uniform, Read, Read, Read, Read, ReadWrite, ReadWrite],
                 )
                 .expect("a kernel");
             let sentinel = Pixel::new(Vec3::splat(-7.0), -7.0);
@@ -337,6 +337,7 @@ fn every_pixel_is_written() {
                         .expect("nodes")
                         .binding(),
                     pixels.binding(),
+                    gpu.zeroed::<u32>("deferred", 1).expect("a list").binding(),
                 ],
                 kernel.workgroups_for([width, height, 1]),
             )

@@ -14,11 +14,12 @@ use spherule::device::Device;
 use spherule::kernel::accel::brute::{MovingSpheres, is_occluded, nearest_hit_in};
 use spherule::kernel::accel::node::Node;
 use spherule::kernel::accel::walk::{is_occluded_in_tree, nearest_hit_in_tree};
-use spherule::kernel::{Effects, Hit, Material, Pixel, Ray, Rung, Shading, Sphere};
+use spherule::kernel::precision::{DEFERRING, intersect_or_defer};
+use spherule::kernel::{Camera, Effects, Hit, Material, Pixel, Ray, Rung, Shading, Sphere};
 use spherule::render::pace::Pace;
 use spherule::render::{QUIET, Settings, cpu, whole_image};
 use spherule::scene::World;
-use spherule::trace::CpuTracer;
+use spherule::trace::{CpuTracer, GpuTracer};
 
 mod common;
 use common::{all_adapters, device, gpus, skips};
@@ -271,6 +272,103 @@ fn tiles_find_what_the_cpu_finds() {
                     "{name}: {differing} pixels on {}",
                     gpu.name()
                 );
+            }
+        }
+    }
+}
+
+/// A sphere that the line y = 1 along x touches, one that the line y = 100 meets half way between two
+/// floats, and others beside them.
+fn left_open(count: usize) -> Vec<Sphere> {
+    let mut spheres = vec![
+        Sphere::new(Vec3::ZERO, 1.0),
+        Sphere::new(Vec3::new(0.0, 100.0, 0.0), 0.25),
+    ];
+    let beside = |index| Sphere::new(Vec3::new(index as f32, -100.0, 0.0), 0.5);
+    spheres.extend((2..count).map(beside));
+    spheres
+}
+
+/// From here the root of the second of [`left_open`] is 8388606.75, half way between two floats.
+const FAR: Vec3 = Vec3::new(-8_388_607.0, 100.0, 0.0);
+
+/// What a first launch on a GPU leaves open is answered by a second one, however much that is: more
+/// rays than the second has threads.
+#[test]
+fn rays_that_are_deferred_are_answered() {
+    if skips("rays_that_are_deferred_are_answered") {
+        return;
+    }
+    let spheres = left_open(32);
+    let touching = Ray::new(Vec3::new(-4.0, 1.0, 0.0), Vec3::X);
+    let half_way = Ray::new(FAR, Vec3::X);
+    let rays = [
+        touching,
+        half_way,
+        Ray::new(Vec3::new(-4.0, 0.0, 0.0), Vec3::X),
+        Ray::new(Vec3::new(-4.0, 2.0, 0.0), Vec3::X),
+    ];
+    let first = [(spheres[0], &touching), (spheres[1], &half_way)]
+        .map(|(sphere, ray)| intersect_or_defer(DEFERRING, sphere, ray));
+    assert_eq!(first, [Hit::DEFERRED_T; 2]);
+    let hit = |t, sphere| Hit { t, sphere };
+    let expected = [hit(4.0, 0), hit(8_388_607.0, 1), hit(3.0, 0), Hit::NONE];
+    let many: Vec<Ray> = rays.iter().copied().cycle().take(36_000).collect();
+    for gpu in gpus() {
+        let tracer = GpuTracer::new(gpu, &spheres, Acceleration::Tree).expect("a tree");
+        let batch = tracer.upload(&many).expect("rays");
+        // Twice: the list of the launch before is not taken up again.
+        for _ in 0..2 {
+            tracer.nearest(Rung::Certified, &batch).expect("hits");
+            let hits = tracer.hits(&batch).expect("hits");
+            assert!(hits.iter().eq(expected.iter().cycle().take(many.len())));
+            tracer
+                .occluded(Rung::Certified, &batch)
+                .expect("occlusions");
+            let occluded = tracer.occlusions(&batch).expect("occlusions");
+            assert!(occluded.chunks(4).all(|four| four == [1, 1, 1, 0]));
+        }
+    }
+}
+
+/// The same for pixels, by a tree, by tiles, and among few spheres.
+#[test]
+fn pixels_that_are_deferred_are_answered() {
+    if skips("pixels_that_are_deferred_are_answered") {
+        return;
+    }
+    for (count, acceleration) in [
+        (32, Acceleration::Tree),
+        (32, Acceleration::BruteForce),
+        (2, Acceleration::BruteForce),
+    ] {
+        let mut world = World::default();
+        let white = world.add_material(Material::diffuse(Vec3::ONE));
+        for sphere in left_open(count) {
+            world.add(sphere, white);
+        }
+        let mut scene = Scene::new(world);
+        (scene.width, scene.height) = (65, 41);
+        let mut launch = whole_image(&scene).expect("a launch");
+        // The image is less than a tenth of the sphere.
+        launch.camera = Camera::from_basis(FAR, Vec3::X, 2e-9 * Vec3::Z, 2e-9 * Vec3::Y);
+        let spheres = &scene.world.spheres[..];
+        let rays: Vec<Ray> = (0..65 * 41)
+            .map(|index| glam::UVec2::new(index % 65, index / 65))
+            .map(|at| launch.camera.pixel_ray(at, launch.image_size))
+            .collect();
+        let is_open = |ray| intersect_or_defer(DEFERRING, spheres[1], ray) == Hit::DEFERRED_T;
+        assert!(is_open(&rays[20 * 65 + 32]));
+        let rung = Rung::Certified;
+        let settings = Settings::from((Shading::Flat, rung)).acceleration(acceleration);
+        for gpu in gpus() {
+            let world =
+                spherule::render::gpu::Prepared::new(gpu, &scene.world, settings).expect("a world");
+            let (pixels, _) =
+                spherule::render::gpu::render(gpu, &launch, &world, QUIET).expect("an image");
+            for (pixel, ray) in pixels.iter().zip(&rays) {
+                let hit = nearest_hit_in(rung.to_u32(), ray, spheres, 0, u32::MAX);
+                assert_eq!(pixel.depth(), hit.t, "{acceleration:?} {}", gpu.name());
             }
         }
     }
