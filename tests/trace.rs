@@ -277,8 +277,8 @@ fn tiles_find_what_the_cpu_finds() {
     }
 }
 
-/// A sphere that the line y = 1 along x touches, one that the line y = 100 meets half way between two
-/// floats, and others beside them.
+/// A sphere that the line y = 1 along x touches, one that the line y = 100 meets half way between
+/// two floats, and others beside them.
 fn left_open(count: usize) -> Vec<Sphere> {
     let mut spheres = vec![
         Sphere::new(Vec3::ZERO, 1.0),
