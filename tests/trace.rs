@@ -317,7 +317,7 @@ fn rays_that_are_deferred_are_answered() {
     for gpu in gpus() {
         let tracer = GpuTracer::new(gpu, &spheres, Acceleration::Tree).expect("a tree");
         let batch = tracer.upload(&many).expect("rays");
-        // Twice: the list of the launch before is not taken up again.
+        // Twice, with the same list.
         for _ in 0..2 {
             tracer.nearest(Rung::Certified, &batch).expect("hits");
             let hits = tracer.hits(&batch).expect("hits");

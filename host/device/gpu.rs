@@ -671,10 +671,8 @@ impl Gpu {
             _ => None,
         };
         waited?;
-        tracing::trace!("ran {name} in {:?} workgroups: {host:.1?}", {
-            let workgroups: Vec<[u32; 3]> = kernels.iter().map(|(_, count)| *count).collect();
-            workgroups
-        });
+        let workgroups: Vec<[u32; 3]> = kernels.iter().map(|(_, count)| *count).collect();
+        tracing::trace!("ran {name} in {workgroups:?} workgroups: {host:.1?}");
         Ok(LaunchTime { device, host })
     }
 

@@ -42,13 +42,7 @@ pub fn modules(gpu: &Gpu, rung: Rung) -> Result<Vec<Module>> {
         return Ok(vec![whole]);
     }
     Ok(vec![
-        whole.clone().specialise(
-            Rung::SPEC_ID,
-            std::env::var("VARIANT")
-                .ok()
-                .and_then(|v| v.parse().ok())
-                .unwrap_or(DEFERRING),
-        )?,
+        whole.clone().specialise(Rung::SPEC_ID, DEFERRING)?,
         whole.specialise(SECOND_SPEC_ID, 1)?,
     ])
 }
