@@ -9,6 +9,7 @@ use spherule_kernel::accel::slabs::Slabs;
 use spherule_kernel::cull::bounds::{Aim, Line};
 use spherule_kernel::lane::{Lane as _, Lane3};
 use spherule_kernel::precision::OnRung;
+use spherule_kernel::precision::certified::corrected::Residual;
 use spherule_kernel::precision::certified::wide::WideRay;
 use spherule_kernel::precision::root::root_within;
 use spherule_kernel::precision::{double, robust};
@@ -247,9 +248,33 @@ impl Sixteen {
         spheres: &[Sphere],
         indices: __m512i,
     ) -> __m512 {
+        let of = |lanes: &Lanes<f32>| {
+            let lanes = _mm512_permutexvar_ps(rays, lanes.load());
+            Single16(f32x16::simd_from(simd, lanes))
+        };
+        let quadratic = self.quadratic(Avx512(simd), rays, gather(spheres, indices));
+        let (near, far) = quadratic.roots();
+        let (t, is_within) = root_within(near, far, of(&self.t_min), of(&self.end));
+        let hits = is_within & quadratic.meets();
+        let none = Single16::splat(simd, Hit::NONE_T);
+        Single16::select(hits, t, none).0.into()
+    }
+
+    /// The quadratics of sixteen pairs on [`Rung::Robust`], given centres and radii.
+    #[inline]
+    // As for `robust`.
+    #[target_feature(
+        enable = "adx,aes,avx512bitalg,avx512bw,avx512cd,avx512dq,avx512f,avx512ifma,avx512vbmi,avx512vbmi2,avx512vl,avx512vnni,avx512vpopcntdq,bmi1,bmi2,cmpxchg16b,fma,fxsr,gfni,lzcnt,movbe,pclmulqdq,popcnt,rdrand,rdseed,sha,vaes,vpclmulqdq,xsave,xsavec,xsaveopt,xsaves"
+    )]
+    fn quadratic(
+        &self,
+        Avx512(simd): Avx512,
+        rays: __m512i,
+        spheres: [__m512; 4],
+    ) -> robust::Quadratic<Single16<x86::Avx512>> {
         let number = |lanes| Single16(f32x16::simd_from(simd, lanes));
         let of = |lanes: &Lanes<f32>| number(_mm512_permutexvar_ps(rays, lanes.load()));
-        let [cx, cy, cz, radius] = gather(spheres, indices).map(number);
+        let [cx, cy, cz, radius] = spheres.map(number);
         let [x, y, z] = self.direction.each_ref().map(of);
         let [ox, oy, oz] = self.origin.each_ref().map(of);
         let o = Lane3 {
@@ -259,12 +284,7 @@ impl Sixteen {
         };
         let d = Lane3 { x, y, z };
         let (a, inverse) = (of(&self.squared), of(&self.inverse_squared));
-        let quadratic = robust::Quadratic::of(o, radius, d, a, inverse);
-        let (near, far) = quadratic.roots();
-        let (t, is_within) = root_within(near, far, of(&self.t_min), of(&self.end));
-        let hits = is_within & quadratic.meets();
-        let none = Single16::splat(simd, Hit::NONE_T);
-        Single16::select(hits, t, none).0.into()
+        robust::Quadratic::of(o, radius, d, a, inverse)
     }
 
     /// What [`bounds`](spherule_kernel::cull::bounds) tell of sixteen pairs: whether the ray hits
@@ -339,7 +359,8 @@ impl Sixteen {
         Single16::select(hits, t, none).0.into()
     }
 
-    /// The same on [`Rung::Certified`] in 64-bit floats, and for which pairs these are certain.
+    /// The same on [`Rung::Certified`] for the pairs of `there` in 64-bit floats, and for which of
+    /// them these are certain.
     #[inline]
     // As for `robust`.
     #[target_feature(
@@ -348,17 +369,35 @@ impl Sixteen {
     pub(super) fn certified(
         &self,
         Avx512(simd): Avx512,
+        there: __mmask16,
         rays: __m512i,
         spheres: &[Sphere],
         indices: __m512i,
     ) -> (__m512, __mmask16) {
-        let line = self.wide_rays(Avx512(simd), rays);
         let number = |lanes| Single16(f32x16::simd_from(simd, lanes));
-        let [x, y, z, radius] =
-            gather(spheres, indices).map(|lanes| Double16::widened(number(lanes)));
-        let answer = line.intersect(Lane3 { x, y, z }, radius);
-        let is_certain = answer.is_certain.narrowed(simd).to_bitmask();
-        (answer.t.rounded().0.into(), is_certain as __mmask16)
+        let of = |lanes: &Lanes<f32>| number(_mm512_permutexvar_ps(rays, lanes.load()));
+        let line = self.wide_rays(Avx512(simd), rays);
+        let spheres = gather(spheres, indices);
+        let [x, y, z, radius] = spheres.map(|lanes| Double16::widened(number(lanes)));
+        let center = Lane3 { x, y, z };
+
+        let guess = self.quadratic(Avx512(simd), rays, spheres).roots().0;
+        let Residual { g, h } = line.residual(center, radius, Double16::widened(guess));
+        let (g, h) = (g.rounded(), h.rounded());
+        let [x, y, z] = self.direction.each_ref().map(of);
+        let near = Residual { g, h }.correct(guess, Lane3 { x, y, z }, number(spheres[3]));
+        let is_entry = near.is_certain & near.is_near & near.t.simd_gt(of(&self.t_min));
+        let none = guess.splat(Hit::NONE_T);
+        let t = Single16::select(near.t.simd_lt(of(&self.end)), near.t, none);
+        let is_entry_bits = is_entry.to_bitmask() as __mmask16;
+        if there & !is_entry_bits == 0 {
+            return (t.0.into(), there);
+        }
+
+        let answer = line.intersect(center, radius);
+        let is_certain = answer.is_certain.narrowed(simd) | is_entry;
+        let t = Single16::select(is_entry, t, answer.t.rounded());
+        (t.0.into(), is_certain.to_bitmask() as __mmask16)
     }
 
     /// The rays of sixteen pairs in 64-bit floats.

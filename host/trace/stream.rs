@@ -481,7 +481,7 @@ impl Nearest {
                 Rung::Double => sixteen.double(wide, some_rays, spheres, some_indices),
                 Rung::Certified => {
                     let (t, are_certain) =
-                        sixteen.certified(wide, some_rays, spheres, some_indices);
+                        sixteen.certified(wide, there, some_rays, spheres, some_indices);
                     let open = there & !are_certain;
                     if open == 0 { t } else { one_by_one(open, t) }
                 }
