@@ -231,6 +231,11 @@ pub enum Error {
 }
 
 impl Error {
+    /// What is wrong with a scene that a program made, and how to mend it.
+    pub(crate) fn of_scene(message: impl Into<String>, help: impl Into<String>) -> Self {
+        Self::Scene(SceneError::without_place("", message, help))
+    }
+
     /// How to fix it, as a sentence for the user.
     #[must_use]
     pub fn help(&self) -> String {

@@ -185,6 +185,8 @@ macro_rules! single {
         impl<S: Simd> Lane for $single<S> {
             type Mask = $mask<S>;
 
+            const ROUNDOFF: f32 = f32::ROUNDOFF;
+
             #[inline(always)]
             fn splat(self, value: f32) -> Self {
                 Self($vector::splat(self.0.simd, value))
@@ -266,6 +268,8 @@ single!(Single8, f32x8, mask32x8);
 
 impl<S: Simd> Lane for Double16<S> {
     type Mask = DoubleMask<S>;
+
+    const ROUNDOFF: f32 = f64::ROUNDOFF;
 
     #[inline(always)]
     fn splat(self, value: f32) -> Self {
@@ -372,6 +376,8 @@ impl Not for FourMask {
 
 impl Lane for Four {
     type Mask = FourMask;
+
+    const ROUNDOFF: f32 = f32::ROUNDOFF;
 
     #[inline(always)]
     fn splat(self, value: f32) -> Self {

@@ -2,6 +2,7 @@
 
 use glam::{DVec3, Vec3, Vec4};
 use spherule_kernel::Sphere;
+use spherule_kernel::shape::Shape;
 
 /// An axis-aligned box. The fourth coordinates are not used.
 #[derive(Clone, Copy)]
@@ -37,6 +38,37 @@ impl Aabb {
         let size = sphere.center().as_dvec3().abs() + first.abs().max(last.abs());
         let low = first.min(last) - radius - size * 4e-7;
         let high = first.max(last) + radius + size * 4e-7;
+        Self {
+            low: Vec3::from_array(low.to_array().map(|x| (x as f32).next_down())).extend(0.0),
+            high: Vec3::from_array(high.to_array().map(|x| (x as f32).next_up())).extend(0.0),
+        }
+    }
+
+    /// The box around every position of a shape while the shutter is open, rounded outwards.
+    pub(super) fn of_shape(shape: &Shape, velocity: Vec3, shutter: (f32, f32)) -> Self {
+        let (low, high) = shape.bounds();
+        if velocity == Vec3::ZERO {
+            return Self {
+                low: low.extend(0.0),
+                high: high.extend(0.0),
+            };
+        }
+        let at =
+            |corner: Vec3, time: f32| corner.as_dvec3() + velocity.as_dvec3() * f64::from(time);
+        let (first, last) = (
+            (at(low, shutter.0), at(high, shutter.0)),
+            (at(low, shutter.1), at(high, shutter.1)),
+        );
+        // As for a sphere.
+        let size = low.abs().max(high.abs()).as_dvec3()
+            + first
+                .0
+                .abs()
+                .max(first.1.abs())
+                .max(last.0.abs())
+                .max(last.1.abs());
+        let low = first.0.min(last.0) - size * 4e-7;
+        let high = first.1.max(last.1) + size * 4e-7;
         Self {
             low: Vec3::from_array(low.to_array().map(|x| (x as f32).next_down())).extend(0.0),
             high: Vec3::from_array(high.to_array().map(|x| (x as f32).next_up())).extend(0.0),

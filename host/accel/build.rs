@@ -1,4 +1,4 @@
-//! Builds a tree of boxes over spheres, on every thread.
+//! Builds a tree of boxes over spheres, or over other shapes, on every thread.
 //!
 //! Top down, by the surface area heuristic over bins (I. Wald, On fast Construction of SAH-based
 //! Bounding Volume Hierarchies, RT 2007). The parts of a node are split in two again until the node
@@ -12,6 +12,7 @@ use glam::{UVec4, Vec3};
 use rayon::prelude::*;
 use spherule_kernel::Sphere;
 use spherule_kernel::accel::node::{Extent, Node, Tree as NodeTree};
+use spherule_kernel::shape::Shape;
 
 use super::aabb::{Aabb, Item};
 use super::quantise::{corner_of, put_sides, sides};
@@ -19,6 +20,8 @@ use super::split::{Part, SHARED, split, split_along, widest_axis};
 use super::tree::{BuiltTree, Nodes};
 use crate::scene::world::{GRAIN, bits_of};
 
+/// The words that tell what a tree is built over apart.
+const KEY: usize = 16;
 /// The most spheres in a node that has no nodes as children.
 const FULL: usize = Node::WIDTH * Node::MAX_LEAF;
 
@@ -38,7 +41,7 @@ pub fn build(
         return None;
     }
     let still = Vec3::ZERO;
-    let mut items: Vec<Item> = spheres
+    let items: Vec<Item> = spheres
         .par_iter()
         .enumerate()
         .with_min_len(GRAIN)
@@ -52,6 +55,63 @@ pub fn build(
             Item::new(index as u32, bounds)
         })
         .collect();
+    let smallest_radius = spheres
+        .par_iter()
+        .with_min_len(GRAIN)
+        .map(|sphere| sphere.radius().abs())
+        .reduce(|| f32::MAX, f32::min);
+    let velocities = if shutter == (0.0, 0.0) {
+        &[]
+    } else {
+        velocities
+    };
+    let key = |index: u32| {
+        let velocity = velocities.get(index as usize).copied();
+        let bits = bits_of(&spheres[index as usize], velocity.unwrap_or_default());
+        let mut key = [0; KEY];
+        key[..bits.len()].copy_from_slice(&bits);
+        key
+    };
+    grow(items, smallest_radius, Given { key: &key })
+}
+
+/// [`build`] over other shapes, of any number.
+#[must_use]
+pub fn build_shapes(
+    shapes: &[Shape],
+    velocities: &[Vec3],
+    shutter: (f32, f32),
+) -> Option<BuiltTree> {
+    if !(1..=Node::MAX_SPHERES as usize).contains(&shapes.len()) {
+        return None;
+    }
+    let velocity_of = |index: usize| velocities.get(index).copied().unwrap_or_default();
+    let items: Vec<Item> = shapes
+        .par_iter()
+        .enumerate()
+        .with_min_len(GRAIN)
+        .map(|(index, shape)| {
+            let bounds = Aabb::of_shape(shape, velocity_of(index), shutter);
+            Item::new(index as u32, bounds)
+        })
+        .collect();
+    let smallest_radius = shapes
+        .par_iter()
+        .with_min_len(GRAIN)
+        .map(|shape| shape.thickness(shape.kinds()))
+        .reduce(|| f32::MAX, f32::min);
+    let key = |index: u32| {
+        let velocity = velocity_of(index as usize).to_array().map(f32::to_bits);
+        let mut key = [0; KEY];
+        key[..12].copy_from_slice(bytemuck::cast_slice(&[shapes[index as usize]]));
+        key[12..15].copy_from_slice(&velocity);
+        key
+    };
+    grow(items, smallest_radius, Given { key: &key })
+}
+
+/// Grows a tree over boxes; `None` if one of them is not finite or beyond what nodes hold.
+fn grow(mut items: Vec<Item>, smallest_radius: f32, given: Given<'_>) -> Option<BuiltTree> {
     let limit = Vec3::splat(Node::MAX_COORDINATE);
     let is_within = |item: &Item| {
         let size = item.low.truncate().abs().max(item.high.truncate().abs());
@@ -67,18 +127,13 @@ pub fn build(
             || (Aabb::EMPTY, Aabb::EMPTY),
             |a, b| (a.0.with(b.0), a.1.with(b.1)),
         );
-    let smallest_radius = spheres
-        .par_iter()
-        .with_min_len(GRAIN)
-        .map(|sphere| sphere.radius().abs())
-        .reduce(|| f32::MAX, f32::min);
     let extent = Extent {
         low: bounds.low.truncate(),
         high: bounds.high.truncate(),
         smallest_radius,
     };
     // Splits of many items sort into it.
-    let room = if count < SHARED { 0 } else { count };
+    let room = if items.len() < SHARED { 0 } else { items.len() };
     let scratch = (0..room).into_par_iter().with_min_len(GRAIN);
     let mut scratch: Vec<Item> = scratch.map(|_| Item::NONE).collect();
     let whole = Part {
@@ -87,14 +142,6 @@ pub fn build(
         bounds,
         middles,
         weights: Vec3::ONE,
-    };
-    let given = Given {
-        spheres,
-        velocities: if shutter == (0.0, 0.0) {
-            &[]
-        } else {
-            velocities
-        },
     };
     let branch = Branch::build(whole, 0, given);
     let above = Node::ROOT as usize + 1;
@@ -129,21 +176,11 @@ struct Branch {
     branches: Vec<Branch>,
 }
 
-/// What the tree is built over.
+/// What the tree is built over: bits that are the same exactly for those that are equal and move
+/// alike, by index.
 #[derive(Clone, Copy)]
 struct Given<'a> {
-    spheres: &'a [Sphere],
-    /// Empty if nothing moves.
-    velocities: &'a [Vec3],
-}
-
-impl Given<'_> {
-    /// [`bits_of`] the sphere with this index.
-    fn key(&self, index: u32) -> [u32; 7] {
-        let sphere = &self.spheres[index as usize];
-        let velocity = self.velocities.get(index as usize).copied();
-        bits_of(sphere, velocity.unwrap_or_default())
-    }
+    key: &'a (dyn Fn(u32) -> [u32; KEY] + Sync),
 }
 
 impl<'a> Part<'a> {
@@ -162,13 +199,13 @@ impl<'a> Part<'a> {
             return self;
         }
         let by_key = |a: &Item, b: &Item| {
-            let order = given.key(a.index()).cmp(&given.key(b.index()));
+            let order = (given.key)(a.index()).cmp(&(given.key)(b.index()));
             order.then(a.index().cmp(&b.index()))
         };
         self.items.par_sort_unstable_by(by_key);
         let mut kept = 1;
         for at in 1..self.items.len() {
-            if given.key(self.items[at].index()) != given.key(self.items[kept - 1].index()) {
+            if (given.key)(self.items[at].index()) != (given.key)(self.items[kept - 1].index()) {
                 self.items[kept] = self.items[at];
                 kept += 1;
             }

@@ -100,6 +100,9 @@ impl BuiltTree {
             },
             materials: world.materials.clone(),
             material_names: world.material_names.clone(),
+            shapes: world.shapes.clone(),
+            shape_material_ids: world.shape_material_ids.clone(),
+            shape_velocities: world.shape_velocities.clone(),
         }
     }
 }

@@ -8,6 +8,8 @@
 //! | [`ask`] | functions of the kernel, run on a device |
 //! | [`families`] | families of rays, each hard in its own way |
 //! | [`hard_rays`] | hard rays with exact answers, as files for other programs |
+//! | [`shape_oracle`] | the same for shapes beside spheres |
+//! | [`shape_families`] | families of rays and shapes, and the errors of a rung on them |
 //! | [`screen`] | 64-bit arithmetic with an error bound, which saves most of the oracle's work |
 //! | [`measure`] | the errors of a rung |
 //! | [`scene_rays`] | the rays of a scene as a family |
@@ -29,3 +31,5 @@ pub mod samples;
 pub mod scene_cases;
 pub mod scene_rays;
 pub mod screen;
+pub mod shape_families;
+pub mod shape_oracle;

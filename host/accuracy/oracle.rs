@@ -26,6 +26,16 @@ pub struct Intersection {
     exponent: i64,
 }
 
+/// A numerator and a positive denominator.
+pub(super) struct Fraction(BigInt, BigInt);
+
+impl Fraction {
+    /// Whether this is less than another.
+    pub(super) fn is_below(&self, other: &Self) -> bool {
+        &self.0 * &other.1 < &other.0 * &self.1
+    }
+}
+
 /// One of the two roots.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Root {
@@ -76,6 +86,69 @@ impl Intersection {
             radius_squared,
             exponent: length_exponent - direction_exponent,
         })
+    }
+
+    /// The roots of a t² + 2b t + c, in units of two to a power; `a` is not negative.
+    pub(super) fn of_coefficients(a: BigInt, b: BigInt, c: BigInt, exponent: i64) -> Self {
+        let discriminant = &b * &b - &a * &c;
+        Self {
+            a,
+            b,
+            c,
+            discriminant,
+            radius_squared: BigInt::ZERO,
+            exponent,
+        }
+    }
+
+    /// Whether the quadratic is a constant: then it has no roots, or every number is one.
+    pub(super) fn is_constant(&self) -> bool {
+        self.a.sign() == Sign::NoSign
+    }
+
+    /// Two fractions between which a root is, with so many binary digits after the point of √Δ.
+    pub(super) fn enclose(&self, root: Root, bits: u64) -> [Fraction; 2] {
+        let low = (self.discriminant.magnitude() << (2 * bits)).sqrt();
+        let high = &low + 1_u32;
+        let end = |root_of: BigUint| {
+            let signed = match root {
+                Root::Near => -BigInt::from(root_of),
+                Root::Far => BigInt::from(root_of),
+            };
+            let numerator = signed - (&self.b << bits);
+            let shift = self.exponent - bits as i64;
+            if shift >= 0 {
+                Fraction(numerator << shift as u64, self.a.clone())
+            } else {
+                Fraction(numerator, &self.a << (-shift) as u64)
+            }
+        };
+        match root {
+            Root::Near => [end(high), end(low)],
+            Root::Far => [end(low), end(high)],
+        }
+    }
+
+    /// The sign of `constant` + `slope` · t, in these integers, at an exact root t.
+    pub(super) fn sign_of_linear(&self, root: Root, constant: &BigInt, slope: &BigInt) -> i32 {
+        // constant a − slope b ± slope √Δ.
+        let left = constant * &self.a - slope * &self.b;
+        let times = match root {
+            Root::Near => -slope,
+            Root::Far => slope.clone(),
+        };
+        let squared = &times * &times * &self.discriminant;
+        let of_root = match sign(&squared) {
+            0 => 0,
+            _ => sign(&times),
+        };
+        match (sign(&left), of_root) {
+            (one, 0) => one,
+            (0, other) => other,
+            (one, other) if one == other => one,
+            // Of opposite signs: the larger decides.
+            (one, _) => one * order(&(&left * &left), &squared),
+        }
     }
 
     /// Whether the line meets the sphere, possibly in a single point.
@@ -263,7 +336,7 @@ fn decompose(x: f32) -> (BigInt, i64) {
 }
 
 /// The floats as integers times one common power of two.
-fn to_integers(values: &[f32]) -> (Vec<BigInt>, i64) {
+pub(super) fn to_integers(values: &[f32]) -> (Vec<BigInt>, i64) {
     let parts: Vec<(BigInt, i64)> = values.iter().map(|value| decompose(*value)).collect();
     let common = parts
         .iter()

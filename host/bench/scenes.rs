@@ -227,6 +227,7 @@ impl Source {
             Self::File(path) => path,
         };
         let mut scene = Scene::load(path)?;
+        scene.require_spheres_alone("bench")?;
         (scene.width, scene.height) = (width, height);
         let (mut low, mut high) = (Vec3::splat(f32::MAX), Vec3::splat(f32::MIN));
         for sphere in &scene.world.spheres {

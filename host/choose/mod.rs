@@ -39,11 +39,14 @@
 //! a point P of the first sphere over the plane of the circle, 2D x, so that the surfaces are
 //! t(s₁ + s₂) apart at x = t(s₁ + s₂) r₂/D (`meeting.rs`).
 //!
+//! Other shapes are bounded one by one (`shapes.rs`), not where they meet.
+//!
 //! Rays that start on surfaces are not in the bound: what an error of theirs moves is light, or a
 //! shadow, by as little.
 
 mod meeting;
 mod neighbours;
+mod shapes;
 mod sight;
 
 use spherule_kernel::Rung;
@@ -86,13 +89,23 @@ fn cheap_rungs(has_f64: bool) -> &'static [Rung] {
 #[must_use]
 pub fn choose(scene: &Scene, tolerance: f64, has_f64: bool) -> Choice {
     let mut cheaper = None;
-    for rung in cheap_rungs(has_f64) {
+    let rungs = cheap_rungs(has_f64);
+    for rung in rungs {
         let bound = bound(scene, *rung, tolerance);
         if bound <= tolerance {
             return Choice {
                 rung: *rung,
                 bound,
                 is_within: true,
+                cheaper,
+            };
+        }
+        if !scene.world.shapes.is_empty() && Some(rung) == rungs.last() {
+            // There is none above for other shapes.
+            return Choice {
+                rung: *rung,
+                bound,
+                is_within: false,
                 cheaper,
             };
         }
@@ -140,7 +153,8 @@ fn bound_between(scene: &Scene, rung: Rung, tolerance: f64, shutter: [f64; 2]) -
         shutter,
     };
     let count = scene.world.spheres.len();
-    let (of_one, around) = view.largest_shift_on_one();
+    let (of_spheres, around) = view.largest_shift_on_one();
+    let of_one = of_spheres.max(view.largest_shift_on_a_shape());
     let within = tolerance * pixel;
     if count < 2 || of_one.is_nan() || of_one > within {
         return of_one / pixel;

@@ -188,6 +188,7 @@ fn scene(arguments: &AccuracyArguments, outputs: &Outputs) -> Result<Option<Scen
     refuse_inputs(&outputs.all(), std::slice::from_ref(path))?;
     let mut scene = load(path)?;
     refuse_inputs(&outputs.all(), &scene.sources)?;
+    scene.require_spheres_alone("accuracy")?;
     if let Some(size) = arguments.size {
         (scene.width, scene.height) = (size.width, size.height);
     }

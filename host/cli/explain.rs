@@ -30,6 +30,8 @@ use crate::write::same::refuse_inputs;
 struct ExplainReport {
     scene: String,
     spheres: usize,
+    /// Shapes beside the spheres.
+    shapes: usize,
     /// Size of the image that was measured.
     width: u32,
     height: u32,
@@ -145,6 +147,7 @@ fn report(
     Ok(ExplainReport {
         scene: shown_path(&arguments.input),
         spheres: scene.world.spheres.len(),
+        shapes: scene.world.shapes.len(),
         width: scene.width,
         height: scene.height,
         whole_image,
@@ -217,11 +220,15 @@ fn table(report: &ExplainReport) -> String {
 /// What is rendered, on what, and how much of it was measured.
 fn add_scene(text: &mut String, report: &ExplainReport) -> fmt::Result {
     let [width, height] = report.whole_image;
+    let mut contents = count_of(report.spheres, "sphere");
+    if report.shapes > 0 {
+        contents += &format!(", {}", count_of(report.shapes, "other shape"));
+    }
     writeln!(
         text,
         "{}: {}, {width} × {height} pixels, {}, at most {}\n{}, precision {} ({})",
         report.scene,
-        count_of(report.spheres, "sphere"),
+        contents,
         count_of(report.whole_samples as usize, "sample"),
         count_of(report.max_bounces as usize, "bounce"),
         report.device,

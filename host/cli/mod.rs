@@ -201,7 +201,7 @@ fn load(path: &Path) -> Result<Scene> {
     tracing::debug!(
         "read {}: {}, {}, {}, {} × {} pixels, {}, effects: [{}]: {:.1?}",
         shown_path(path),
-        count_of(scene.world.spheres.len(), "sphere"),
+        scene.world.contents(),
         count_of(scene.world.materials.len(), "material"),
         count_of(scene.lights.len(), "light"),
         scene.width,

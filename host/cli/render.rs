@@ -36,6 +36,8 @@ struct Stats {
     backend: &'static str,
     precision: &'static str,
     spheres: usize,
+    /// Shapes beside the spheres.
+    shapes: usize,
     width: u32,
     height: u32,
     /// Camera rays that were traced, one for each sample of each pixel.
@@ -106,6 +108,7 @@ impl Stats {
             backend: device.backend(),
             precision: settings.rung.name(),
             spheres: scene.world.spheres.len(),
+            shapes: scene.world.shapes.len(),
             width: scene.width,
             height: scene.height,
             rays: rendered.rays,
@@ -435,7 +438,7 @@ fn say_what_is_written(
             image.width(),
             image.height(),
             if extent.is_empty() { "" } else { ", " },
-            count_of(scene.world.spheres.len(), "sphere"),
+            scene.world.contents(),
             human(total),
         ),
     );

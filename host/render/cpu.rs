@@ -8,14 +8,16 @@ use std::borrow::Cow;
 
 use glam::UVec2;
 use rayon::prelude::*;
+use spherule_kernel::pixel::render_pixel_of_shapes;
 use spherule_kernel::precision::OnRung;
 use spherule_kernel::shading::OnShading;
-use spherule_kernel::{Launch, Pixel};
+use spherule_kernel::shape::Shapes;
+use spherule_kernel::{Launch, Material, Pixel};
 
 use super::launch::{check_launch, check_pixels};
 use super::packet::{self, Frusta, Packet, SIDE};
 use super::{Progress, Settings};
-use crate::accel::{self, Acceleration, Nodes};
+use crate::accel::{self, Acceleration, Nodes, ShapeTree};
 use crate::cpu::InstructionSet;
 use crate::error::Result;
 use crate::film;
@@ -34,20 +36,24 @@ const PATIENCE: Duration = Duration::from_millis(5);
 pub struct Prepared<'a> {
     world: Cow<'a, World>,
     nodes: Nodes,
+    shapes: ShapeTree,
 }
 
 impl<'a> Prepared<'a> {
     /// Grows the tree.
     #[must_use]
     pub fn new(world: &'a World, acceleration: Acceleration) -> Self {
+        let shapes = ShapeTree::of(world, (0.0, 0.0));
         match accel::build_still(&world.spheres, acceleration.min_spheres(MIN_SPHERES)) {
             Some(tree) => Self {
                 world: Cow::Owned(tree.sort_world(world)),
                 nodes: tree.nodes,
+                shapes,
             },
             None => Self {
                 world: Cow::Borrowed(world),
                 nodes: Nodes::default(),
+                shapes,
             },
         }
     }
@@ -91,6 +97,7 @@ pub fn render_to(
     settings.rung.with(Render {
         launch,
         world,
+        shading: settings.shading.to_u32(),
         shade: settings.shading.with(Shade),
         progress,
         pixels,
@@ -116,6 +123,7 @@ impl OnShading for Shade {
 struct Render<'a> {
     launch: &'a Launch,
     world: &'a Prepared<'a>,
+    shading: u32,
     shade: ShadeSquare,
     progress: Progress<'a>,
     pixels: &'a mut [Pixel],
@@ -134,13 +142,26 @@ fn bands<const RUNG: u32>(render: Render<'_>) {
     let Render {
         launch,
         world,
+        shading,
         shade,
         progress,
         pixels,
     } = render;
     let width = launch.tile_size.x as usize;
     let all = pixels.len();
-    let Prepared { world, nodes } = world;
+    let Prepared {
+        world,
+        nodes,
+        shapes,
+    } = world;
+    let of_shapes = OfShapes {
+        shading,
+        rung: RUNG,
+        launch,
+        shapes: shapes.shapes(0),
+        material_ids: &shapes.material_ids,
+        materials: &world.materials,
+    };
     let done = AtomicUsize::new(0);
     let goes_on = |more: usize| {
         let done = done.fetch_add(more, Ordering::Relaxed) + more;
@@ -179,6 +200,9 @@ fn bands<const RUNG: u32>(render: Render<'_>) {
                     &world.spheres,
                 );
                 shade(pixels, (width, left), &packet, launch, world);
+                if !shapes.kinds.is_empty() {
+                    of_shapes.render(pixels, width, corner);
+                }
             }
             goes_on((width - since) * rows);
         });
@@ -206,6 +230,39 @@ fn shade<const SHADING: u32>(
                 &world.materials,
                 launch.unless_hit(pixel),
             );
+        }
+    }
+}
+
+/// What renders the shapes beside the spheres.
+struct OfShapes<'a> {
+    shading: u32,
+    rung: u32,
+    launch: &'a Launch,
+    shapes: Shapes<'a>,
+    material_ids: &'a [u32],
+    materials: &'a [Material],
+}
+
+impl OfShapes<'_> {
+    /// Renders them into a square of pixels at `corner`, over the spheres there. `pixels` are rows
+    /// of an image, `width` pixels wide, of which the first is that of the corner.
+    #[inline(never)]
+    fn render(&self, pixels: &mut [Pixel], width: usize, corner: UVec2) {
+        let left = corner.x as usize;
+        for (y, row) in pixels.chunks_mut(width).enumerate() {
+            for (x, pixel) in row[left..].iter_mut().take(SIDE).enumerate() {
+                *pixel = render_pixel_of_shapes(
+                    self.shading,
+                    self.rung,
+                    self.launch,
+                    &self.shapes,
+                    self.material_ids,
+                    self.materials,
+                    corner + UVec2::new(x as u32, y as u32),
+                    pixel,
+                );
+            }
         }
     }
 }

@@ -7,15 +7,16 @@ use std::time::{Duration, Instant};
 use glam::UVec2;
 use spherule_kernel::accel::node::Node;
 use spherule_kernel::film::TILE;
+use spherule_kernel::shape::{Kinds, Shape};
 use spherule_kernel::{Launch, Material, Pixel, Shading, Sphere};
 
 use super::launch::check_whole;
 use super::pace::Pace;
 use super::tiles::Tiles;
 use super::{Progress, QUIET, Settings, Timings};
-use crate::accel::{self, BuiltTree};
+use crate::accel::{self, BuiltTree, ShapeTree};
 use crate::device::canary::Canary;
-use crate::device::{Access, Buffer, Deferring, Gpu, Staging, rung};
+use crate::device::{Access, Buffer, Deferring, Gpu, Kernel, Staging, rung};
 use crate::error::{Error, Result};
 use crate::film;
 use crate::scene::World;
@@ -82,11 +83,45 @@ pub struct Prepared {
     /// The world, in parts that each fit one binding.
     parts: Vec<Part>,
     materials: Buffer<Material>,
+    shapes: Option<OtherShapes>,
     search: Search,
     /// What a pixel takes, in intersections.
     work: u64,
     /// What was learned of this kernel so far.
     pace: Mutex<Pace>,
+}
+
+/// The shapes beside the spheres, and the kernel for them.
+#[derive(Debug)]
+struct OtherShapes {
+    kernel: Kernel,
+    shapes: Buffer<Shape>,
+    material_ids: Buffer<u32>,
+    nodes: Buffer<Node>,
+}
+
+impl OtherShapes {
+    /// The entry point's name.
+    const ENTRY: &str = "render_shapes";
+
+    /// Grows the tree, uploads the shapes, and compiles the kernel; `None` without shapes.
+    fn new(gpu: &Gpu, world: &World, settings: Settings) -> Result<Option<Self>> {
+        let tree = ShapeTree::of(world, (0.0, 0.0));
+        if tree.kinds.is_empty() {
+            return Ok(None);
+        }
+        let module = rung::module(gpu, settings.rung)?
+            .specialise(Shading::SPEC_ID, settings.shading.to_u32())?
+            .specialise(Kinds::SPEC_ID, tree.kinds.to_bits())?;
+        let mut access = [Access::Read; 6];
+        (access[0], access[5]) = (Access::Uniform, Access::ReadWrite);
+        Ok(Some(Self {
+            kernel: gpu.kernel(&module, Self::ENTRY, &access)?,
+            shapes: gpu.upload("shapes", &tree.shapes)?,
+            material_ids: gpu.upload("material ids of shapes", &tree.material_ids)?,
+            nodes: gpu.upload("nodes of shapes", &tree.nodes)?,
+        }))
+    }
 }
 
 #[derive(Debug)]
@@ -165,6 +200,7 @@ impl Prepared {
             kernel,
             search,
             parts: parts.collect::<Result<_>>()?,
+            shapes: OtherShapes::new(gpu, world, settings)?,
             materials: gpu.upload("materials", &world.materials)?,
             work: search.work(count as u64),
             pace: Mutex::new(Pace::first_on(gpu)),
@@ -365,6 +401,19 @@ fn render_tile(
             }
         }
         before += part.spheres.len();
+    }
+    if let Some(shapes) = &world.shapes {
+        gpu.update(&target.launch, &launch)?;
+        let bindings = [
+            target.launch.binding(),
+            shapes.shapes.binding(),
+            shapes.material_ids.binding(),
+            world.materials.binding(),
+            shapes.nodes.binding(),
+            target.pixels.binding(),
+        ];
+        let groups = shapes.kernel.workgroups_for([tile.x, tile.y, 1]);
+        took += gpu.launch(&shapes.kernel, &bindings, groups)?.best();
     }
     Ok((took, true))
 }

@@ -3,7 +3,6 @@
 use crate::accel;
 use crate::error::Result;
 use crate::memory;
-use crate::plural::count_of;
 use crate::scene::Scene;
 
 /// Memory for all that is small, in bytes.
@@ -21,7 +20,7 @@ const BYTES_A_TEXEL: u64 = 64;
 /// [`OutOfHostMemory`](crate::Error::OutOfHostMemory) with the sum.
 pub(super) fn memory_for(scene: &Scene, bytes_a_pixel: u64) -> Result<()> {
     let pixels = u64::from(scene.width) * u64::from(scene.height);
-    let spheres = scene.world.spheres.len() as u64;
+    let spheres = (scene.world.spheres.len() + scene.world.shapes.len()) as u64;
     let image = scene.sky.as_ref().and_then(|sky| sky.image.as_ref());
     let texels = image.map_or(0, |image| image.texels.len() as u64);
     memory::check(
@@ -32,7 +31,7 @@ pub(super) fn memory_for(scene: &Scene, bytes_a_pixel: u64) -> Result<()> {
             "an image of {} × {} pixels of {}",
             scene.width,
             scene.height,
-            count_of(scene.world.spheres.len(), "sphere"),
+            scene.world.contents(),
         ),
     )
 }

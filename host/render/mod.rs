@@ -71,6 +71,7 @@ pub fn render(
     progress: Progress<'_>,
 ) -> Result<Rendered> {
     let settings = settings.into();
+    scene.require_rung(settings.rung)?;
     // Whoever has once broken off is not asked again.
     let is_over = AtomicBool::new(false);
     let progress: Progress<'_> = &|done| {

@@ -64,7 +64,7 @@ const CALLS: &[(Effects, CalledBy)] = &[
         by.map(|by| by + shadow)
     }),
     (Effects::SOFT_SHADOWS, |asked| {
-        match (asked.glow, asked.sun()) {
+        match (asked.lamp, asked.sun()) {
             _ if !asked.seeks_light() => None,
             (Some(index), _) => Some(format!(
                 "spheres of {} shine on others",
@@ -119,9 +119,19 @@ const CALLS: &[(Effects, CalledBy)] = &[
     (Effects::MOTION_BLUR, |asked| {
         let (open, close) = asked.scene.lens.shutter;
         let velocities = &asked.scene.world.velocities;
-        let moving = velocities.iter().filter(|v| **v != Vec3::ZERO).count();
+        let others = &asked.scene.world.shape_velocities;
+        let what = if others.is_empty() {
+            "[[sphere]]"
+        } else {
+            "spheres and shapes"
+        };
+        let moving = velocities
+            .iter()
+            .chain(others)
+            .filter(|v| **v != Vec3::ZERO)
+            .count();
         ((open, close) != (0.0, 0.0) && moving > 0).then(|| {
-            format!("{moving} [[sphere]] with a velocity, and [camera] shutter = [{open}, {close}]")
+            format!("{moving} {what} with a velocity, and [camera] shutter = [{open}, {close}]")
         })
     }),
     (Effects::FOG, |asked| {
@@ -191,7 +201,7 @@ const CALLS: &[(Effects, CalledBy)] = &[
     (Effects::CAUSTICS, |asked| {
         let sampling = &asked.scene.sampling;
         let lamps = asked.scene.lights.len();
-        let has_lamp = lamps > 0 || asked.glow.is_some() || asked.sun().is_some();
+        let has_lamp = lamps > 0 || asked.lamp.is_some() || asked.sun().is_some();
         let is_possible = sampling.max_bounces > 0 && has_lamp && asked.seeks_light();
         if !sampling.caustics || !is_possible {
             return None;
@@ -218,6 +228,8 @@ struct Asked<'a> {
     glass: Option<usize>,
     plastic: Option<usize>,
     glow: Option<usize>,
+    /// The same of spheres alone: other shapes are not looked for.
+    lamp: Option<usize>,
 }
 
 impl<'a> Asked<'a> {
@@ -235,6 +247,7 @@ impl<'a> Asked<'a> {
                 .or_else(|| scene.first_of(Material::BUBBLE)),
             plastic: scene.first_of(Material::PLASTIC),
             glow: scene.first_of(Material::EMISSIVE),
+            lamp: scene.first_among(&|m| m.kind == Material::EMISSIVE, &scene.world.material_ids),
         }
     }
 
@@ -246,7 +259,7 @@ impl<'a> Asked<'a> {
 
     /// How many spheres glow.
     fn count_of_glowing(&self) -> usize {
-        if self.glow.is_none() {
+        if self.lamp.is_none() {
             return 0;
         }
         let world = &self.scene.world;
@@ -432,7 +445,9 @@ impl Scene {
             .lights
             .iter()
             .map(|light| light.position.distance(view.eye));
+        let shapes = self.world.shapes.iter();
         radii
+            .chain(shapes.map(|shape| shape.thickness(shape.kinds())))
             .chain(lights)
             .filter(|length| *length > 0.0)
             .fold(view.eye.distance(view.target), f32::min)
@@ -442,16 +457,28 @@ impl Scene {
         self.first_material(&|material| material.kind == kind)
     }
 
-    /// The first material that is wanted and that a sphere has.
+    /// The first material that is wanted and that a sphere or another shape has.
     fn first_material(&self, wanted: &dyn Fn(&Material) -> bool) -> Option<usize> {
+        let of_spheres = self.first_among(wanted, &self.world.material_ids);
+        let of_shapes = self.first_among(wanted, &self.world.shape_material_ids);
+        of_spheres.into_iter().chain(of_shapes).min()
+    }
+
+    /// Whether a shape beside the spheres glows.
+    pub(crate) fn has_glowing_shapes(&self) -> bool {
+        let glows = |material: &Material| material.kind == Material::EMISSIVE;
+        self.first_among(&glows, &self.world.shape_material_ids)
+            .is_some()
+    }
+
+    /// The first material that is wanted and that is one of `ids`.
+    fn first_among(&self, wanted: &dyn Fn(&Material) -> bool, ids: &[u32]) -> Option<usize> {
         let world = &self.world;
         let candidates: Vec<bool> = world.materials.iter().map(wanted).collect();
         if !candidates.contains(&true) {
             return None;
         }
-        world
-            .material_ids
-            .iter()
+        ids.iter()
             .map(|id| *id as usize)
             .filter(|id| candidates.get(*id) == Some(&true))
             .min()

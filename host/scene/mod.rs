@@ -11,6 +11,7 @@
 //! | `copies` | equal spheres, of which one can be seen |
 //! | `glass` | glass in glass, and glass around a point |
 //! | `origin` | which point becomes the origin of a scene that is far from its own |
+//! | [`shapes`] | what the shapes beside the spheres may be |
 //! | `validate` | checks whether a scene can be rendered |
 
 mod casters;
@@ -19,6 +20,7 @@ pub mod effects;
 mod glass;
 pub mod limits;
 pub(crate) mod origin;
+pub mod shapes;
 pub mod surroundings;
 mod validate;
 pub mod view;
@@ -100,7 +102,7 @@ impl Scene {
     #[must_use]
     pub fn view_or_framed(&self) -> View {
         self.view
-            .unwrap_or_else(|| View::framing(&self.world.spheres, self.aspect()))
+            .unwrap_or_else(|| View::framing(&self.world.framed(), self.aspect()))
     }
 
     /// Width over height.

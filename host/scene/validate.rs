@@ -8,9 +8,10 @@ use spherule_kernel::filter::Filter;
 use spherule_kernel::{Material, Sphere};
 
 use super::limits::{self, Range};
+use super::shapes::{validate_glass, validate_shapes};
 use super::world::{GRAIN, World};
 use super::{GlassShadows, Scene, Surroundings, View};
-use crate::error::{Error, Result, SceneError};
+use crate::error::{Error, Result};
 
 impl Scene {
     /// Whether the scene can be rendered: every number is in its range of [`limits`], every index
@@ -78,7 +79,7 @@ impl Scene {
             one("clamp", limit, limits::CLAMP)?;
         }
         if sampling.caustics && sampling.glass_shadows == GlassShadows::Clear {
-            return Err(wrong(
+            return Err(Error::of_scene(
                 "clear shadows of glass and caustics both let light through it",
                 "take one: [image] glass_shadows = \"clear\", or caustics = true",
             ));
@@ -88,7 +89,8 @@ impl Scene {
         if let Some(view) = &self.view {
             validate_view(view)?;
         }
-        validate_world(&self.world, self.lens.shutter)
+        validate_world(&self.world, self.lens.shutter)?;
+        validate_glass(self)
     }
 
     fn validate_lens(&self) -> Result<()> {
@@ -101,7 +103,7 @@ impl Scene {
         one("the time when the shutter opens", open, limits::TIME)?;
         one("the time when the shutter closes", close, limits::TIME)?;
         if open > close {
-            return Err(wrong(
+            return Err(Error::of_scene(
                 format!("the shutter closes at {close}, before it opens at {open}"),
                 "give the earlier time first",
             ));
@@ -115,7 +117,7 @@ fn validate_filter(filter: Filter) -> Result<()> {
     if filter.kind <= Filter::BLACKMAN_HARRIS {
         return Ok(());
     }
-    Err(wrong(
+    Err(Error::of_scene(
         format!(
             "the filter is of the kind {}, which there is not",
             filter.kind
@@ -130,7 +132,7 @@ fn validate_sky(sky: &Surroundings) -> Result<()> {
     if let Some(sun) = &sky.sun {
         let length = sun.direction.as_dvec3().length();
         if !(0.999..1.001).contains(&length) {
-            return Err(wrong(
+            return Err(Error::of_scene(
                 format!(
                     "the direction towards the sun, {}, is no unit vector",
                     sun.direction
@@ -150,7 +152,7 @@ fn validate_sky(sky: &Surroundings) -> Result<()> {
     };
     let texels = u64::from(image.width) * u64::from(image.height);
     if texels == 0 || texels > limits::MAX_TEXELS || texels != image.texels.len() as u64 {
-        return Err(wrong(
+        return Err(Error::of_scene(
             format!(
                 "the image of the surroundings is {} × {} and holds {} texels",
                 image.width,
@@ -184,7 +186,7 @@ fn validate_view(view: &View) -> Result<()> {
     all("the target", view.target, limits::COORDINATE)?;
     all("up", view.up, limits::COORDINATE)?;
     if !limits::is_vertical_fov(view.vertical_fov) {
-        return Err(wrong(
+        return Err(Error::of_scene(
             format!(
                 "a vertical_fov of {} degrees is not possible",
                 view.vertical_fov
@@ -194,7 +196,7 @@ fn validate_view(view: &View) -> Result<()> {
     }
     match view.camera(1.0) {
         Some(_) => Ok(()),
-        None => Err(wrong(
+        None => Err(Error::of_scene(
             "the scene's camera is degenerate",
             "move eye and target apart, and give an up that is not along the view",
         )),
@@ -204,13 +206,13 @@ fn validate_view(view: &View) -> Result<()> {
 fn validate_world(world: &World, shutter: (f32, f32)) -> Result<()> {
     let count = world.spheres.len();
     if count > limits::MAX_SPHERES {
-        return Err(wrong(
+        return Err(Error::of_scene(
             format!("the world has {count} spheres"),
             format!("{} are the most", limits::MAX_SPHERES),
         ));
     }
     if world.material_ids.len() != count {
-        return Err(wrong(
+        return Err(Error::of_scene(
             format!(
                 "the world has {count} spheres and {} material indices",
                 world.material_ids.len()
@@ -220,7 +222,7 @@ fn validate_world(world: &World, shutter: (f32, f32)) -> Result<()> {
     }
     let moves = !world.velocities.is_empty();
     if moves && world.velocities.len() != count {
-        return Err(wrong(
+        return Err(Error::of_scene(
             format!(
                 "the world has {count} spheres and {} velocities",
                 world.velocities.len()
@@ -231,7 +233,7 @@ fn validate_world(world: &World, shutter: (f32, f32)) -> Result<()> {
     let has_material = |id: &u32| (*id as usize) < world.materials.len();
     let ids = world.material_ids.par_iter().with_min_len(GRAIN);
     if let Some(index) = ids.position_any(|id| !has_material(id)) {
-        return Err(wrong(
+        return Err(Error::of_scene(
             format!(
                 "sphere {index} has the material {}, and the world has {} materials",
                 world.material_ids[index],
@@ -243,6 +245,7 @@ fn validate_world(world: &World, shutter: (f32, f32)) -> Result<()> {
     for (index, material) in world.materials.iter().enumerate() {
         validate_material(index, material)?;
     }
+    validate_shapes(world, shutter)?;
     let velocity = |index: usize| world.velocities.get(index).copied().unwrap_or(Vec3::ZERO);
     let is_wrong = |index: &usize| {
         let sphere = &world.spheres[*index];
@@ -273,7 +276,7 @@ fn validate_sphere(
     one(of("the radius"), sphere.radius(), limits::RADIUS)?;
     all(of("the velocity"), velocity, limits::COORDINATE)?;
     if !limits::is_within(sphere, velocity, shutter) {
-        return Err(wrong(
+        return Err(Error::of_scene(
             format!("sphere {index} reaches beyond {:e}", limits::MAX_LENGTH),
             "make it smaller, or move it towards the origin",
         ));
@@ -305,7 +308,7 @@ fn validate_material(index: usize, material: &Material) -> Result<()> {
             one(of("the index"), material.volume.x, limits::COAT_INDEX)
         }
         Material::EMISSIVE => all(of("the radiance"), material.volume, limits::RADIANCE),
-        kind => Err(wrong(
+        kind => Err(Error::of_scene(
             format!("material {index} is of the kind {kind}, which there is not"),
             "make materials by Material's functions: diffuse, metal, plastic, glass, bubble, emissive",
         )),
@@ -316,7 +319,7 @@ fn whole(name: &str, number: u32, low: u32, high: u32) -> Result<()> {
     if (low..=high).contains(&number) {
         return Ok(());
     }
-    Err(wrong(
+    Err(Error::of_scene(
         format!("{name} = {number} is not possible"),
         format!("give a whole number from {low} to {high}"),
     ))
@@ -326,7 +329,7 @@ fn one(name: impl Display, number: f32, range: Range) -> Result<()> {
     if range.holds(number) {
         return Ok(());
     }
-    Err(wrong(
+    Err(Error::of_scene(
         format!("{name} is {number}, which is not possible"),
         format!("give a number {range}"),
     ))
@@ -336,14 +339,10 @@ fn all(name: impl Display, numbers: Vec3, range: Range) -> Result<()> {
     if range.holds_all(numbers) {
         return Ok(());
     }
-    Err(wrong(
+    Err(Error::of_scene(
         format!("{name} is {numbers}, which is not possible"),
         format!("give three numbers {range}"),
     ))
-}
-
-fn wrong(message: impl Into<String>, help: impl Into<String>) -> Error {
-    Error::Scene(SceneError::without_place("", message, help))
 }
 
 #[cfg(test)]

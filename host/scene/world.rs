@@ -1,14 +1,19 @@
-//! [`World`]: spheres and materials in the kernel's types.
+//! [`World`]: spheres, other shapes and materials in the kernel's types.
+
+use std::borrow::Cow;
 
 use glam::Vec3;
+use spherule_kernel::shape::{Kinds, Shape};
 use spherule_kernel::{Material, Sphere};
 
-/// With fewer spheres than this, a single thread does the work.
 use crate::error::Result;
 use crate::memory;
+use crate::plural::count_of;
+
+/// With fewer spheres than this, a single thread does the work.
 pub(crate) const GRAIN: usize = 1 << 13;
 
-/// A world of spheres in the kernel's types, which is uploaded as it is.
+/// A world of spheres and other shapes in the kernel's types, which is uploaded as it is.
 ///
 /// ```
 /// use spherule::scene::World;
@@ -31,6 +36,12 @@ pub struct World {
     pub material_names: Vec<String>,
     /// The velocities of the spheres, in scene units per unit of time; empty if none moves.
     pub velocities: Vec<Vec3>,
+    /// The shapes beside the spheres.
+    pub shapes: Vec<Shape>,
+    /// For each shape, the index of its material.
+    pub shape_material_ids: Vec<u32>,
+    /// The velocities of the shapes; empty if none moves.
+    pub shape_velocities: Vec<Vec3>,
 }
 
 /// Bits that are the same exactly for equal spheres that move alike.
@@ -73,7 +84,72 @@ impl World {
         self.velocities.push(velocity);
     }
 
-    /// Adds the spheres and materials of another world.
+    /// Adds a shape beside the spheres with the material of this index.
+    ///
+    /// A capsule whose ends are the same is a sphere, and becomes one.
+    ///
+    /// ```
+    /// use spherule::kernel::{Material, glam::Vec3, shape::Capsule};
+    /// use spherule::scene::World;
+    ///
+    /// let mut world = World::default();
+    /// let grey = world.add_material(Material::diffuse(Vec3::splat(0.5)));
+    /// world.add_shape(Capsule::new(Vec3::NEG_X, Vec3::X, 0.25), grey);
+    /// world.add_shape(Capsule::new(Vec3::Y, Vec3::Y, 0.25), grey);
+    /// assert_eq!((world.shapes.len(), world.spheres.len()), (1, 1));
+    /// ```
+    pub fn add_shape(&mut self, shape: impl Into<Shape>, material: u32) {
+        self.add_moving_shape(shape, material, Vec3::ZERO);
+    }
+
+    /// Adds a moving shape; `velocity` is in scene units per unit of time. At time 0 it is where it
+    /// is given.
+    pub fn add_moving_shape(&mut self, shape: impl Into<Shape>, material: u32, velocity: Vec3) {
+        let shape = shape.into();
+        if let Some(sphere) = shape.as_sphere() {
+            if velocity == Vec3::ZERO {
+                self.add(sphere, material);
+            } else {
+                self.add_moving(sphere, material, velocity);
+            }
+            return;
+        }
+        if velocity != Vec3::ZERO {
+            self.shape_velocities.resize(self.shapes.len(), Vec3::ZERO);
+        }
+        if velocity != Vec3::ZERO || !self.shape_velocities.is_empty() {
+            self.shape_velocities.push(velocity);
+        }
+        self.shapes.push(shape);
+        self.shape_material_ids.push(material);
+    }
+
+    /// The spheres, and balls around which a view of the shapes is framed.
+    pub(crate) fn framed(&self) -> Cow<'_, [Sphere]> {
+        if self.shapes.is_empty() {
+            return Cow::Borrowed(&self.spheres);
+        }
+        let shapes = self.shapes.iter().flat_map(Shape::hull);
+        Cow::Owned(self.spheres.iter().copied().chain(shapes).collect())
+    }
+
+    /// How many spheres and other shapes there are, for messages.
+    pub(crate) fn contents(&self) -> String {
+        let spheres = count_of(self.spheres.len(), "sphere");
+        match self.shapes.len() {
+            0 => spheres,
+            shapes => format!("{spheres}, {}", count_of(shapes, "other shape")),
+        }
+    }
+
+    /// The kinds of shapes that there are beside the spheres.
+    #[must_use]
+    pub fn kinds(&self) -> Kinds {
+        let shapes = self.shapes.iter();
+        shapes.fold(Kinds::NONE, |kinds, shape| kinds.and(shape.kinds()))
+    }
+
+    /// Adds the spheres, shapes and materials of another world.
     pub fn append(&mut self, other: &Self) {
         let offset = self.materials.len() as u32;
         let moves = !(self.velocities.is_empty() && other.velocities.is_empty());
@@ -96,9 +172,22 @@ impl World {
         if moves {
             self.velocities.resize(self.spheres.len(), Vec3::ZERO);
         }
+        let moves = !(self.shape_velocities.is_empty() && other.shape_velocities.is_empty());
+        if moves {
+            self.shape_velocities.resize(self.shapes.len(), Vec3::ZERO);
+            self.shape_velocities
+                .extend_from_slice(&other.shape_velocities);
+        }
+        self.shapes.extend_from_slice(&other.shapes);
+        let ids = other.shape_material_ids.iter();
+        self.shape_material_ids
+            .extend(ids.map(|id| id.saturating_add(offset)));
+        if moves {
+            self.shape_velocities.resize(self.shapes.len(), Vec3::ZERO);
+        }
     }
 
-    /// The same spheres, each with its own index in place of its material's.
+    /// The same spheres and shapes, each with its own index in place of its material's.
     ///
     /// # Errors
     ///
@@ -109,9 +198,12 @@ impl World {
         spheres.extend_from_slice(&self.spheres);
         let mut material_ids = memory::room(count as u64, "the indices of the spheres")?;
         material_ids.extend(0..count as u32);
+        let shapes_end = count + self.shapes.len();
         Ok(Self {
             spheres,
             material_ids,
+            shapes: self.shapes.clone(),
+            shape_material_ids: (count as u32..shapes_end as u32).collect(),
             ..Self::default()
         })
     }

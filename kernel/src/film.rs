@@ -169,8 +169,10 @@ pub struct PathLaunch {
     /// Where the table of the spheres that cast caustics begins, in the kernel's tables: see
     /// [`Entry`](crate::path::caustic::casters::Entry).
     pub first_caster: u32,
+    /// The index in hits of the first shape beside the spheres, of which there are as many.
+    pub first_shape: u32,
     /// Padding for the layout on a GPU.
-    pub padding: UVec2,
+    pub padding: u32,
 }
 
 /// Pixels along each side of a tile that takes as many samples as it needs.

@@ -11,7 +11,8 @@ use bytemuck::{Pod, Zeroable};
 pub struct Hit {
     /// The parameter along the ray; [`Hit::NONE_T`] for no hit.
     pub t: f32,
-    /// The index of the sphere; [`Hit::NONE_SPHERE`] for no hit.
+    /// The index of the sphere; [`Hit::NONE_SPHERE`] for no hit. Among spheres and other shapes the
+    /// indices of shapes follow those of spheres.
     pub sphere: u32,
 }
 

@@ -30,6 +30,9 @@ pub trait Lane:
         + BitOr<Output = Self::Mask>
         + Not<Output = Self::Mask>;
 
+    /// The unit roundoff u: half of the distance from one to the next number.
+    const ROUNDOFF: f32;
+
     /// This number in each lane; `self` says only how many lanes there are.
     fn splat(self, value: f32) -> Self;
     /// Rounded to a 32-bit float.
@@ -100,13 +103,15 @@ pub trait Word: Lane<Mask = bool> {
 }
 
 macro_rules! scalar {
-    ($float:ty, $add:ident, $sub:ident, $mul:ident, $splitter:literal) => {
+    ($float:ty, $add:ident, $sub:ident, $mul:ident, $splitter:literal, $bits:literal) => {
         impl Word for $float {
             const SPLITTER: Self = $splitter;
         }
 
         impl Lane for $float {
             type Mask = bool;
+
+            const ROUNDOFF: f32 = 1.0 / (1_u64 << $bits) as f32;
 
             #[inline(always)]
             fn splat(self, value: f32) -> Self {
@@ -188,9 +193,9 @@ macro_rules! scalar {
     };
 }
 
-scalar!(f32, add, sub, mul, 4097.0);
+scalar!(f32, add, sub, mul, 4097.0, 24);
 #[cfg(any(not(target_arch = "spirv"), feature = "f64"))]
-scalar!(f64, add_wide, sub_wide, mul_wide, 134_217_729.0);
+scalar!(f64, add_wide, sub_wide, mul_wide, 134_217_729.0, 53);
 
 /// Three coordinates in lanes.
 #[derive(Clone, Copy, Debug)]

@@ -20,6 +20,7 @@
 //! | [`lane`] | [`lane::Lane`]: the numbers that formulas are written in, one or several side by side |
 //! | [`arithmetic`] | floats whose rounding errors are kept |
 //! | [`precision`] | the ladder: ways to intersect a ray with a sphere, one file a rung |
+//! | [`shape`] | what a ray may hit beside spheres, one file a shape |
 //! | [`cull`] | what few operations tell for certain, so that the rung need not be evaluated |
 //! | [`accel`] | which spheres a ray is tested against: all, or those in the boxes that it meets |
 //! | [`path`] | light paths: what a pixel sees by all effects |
@@ -63,6 +64,7 @@ pub mod precision;
 pub mod probe;
 pub mod ray;
 pub mod shading;
+pub mod shape;
 pub mod sphere;
 #[cfg(not(target_arch = "spirv"))]
 pub mod spirv;

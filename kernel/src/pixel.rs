@@ -15,6 +15,8 @@ use crate::material::{Material, material_of};
 use crate::precision::{DEFERRING, Rung, is_lazy};
 use crate::ray::Ray;
 use crate::shading::{Seen, shade};
+use crate::shape::Shapes;
+use crate::shape::among::Resting;
 use crate::sphere::Sphere;
 use crate::surface::Surface;
 
@@ -75,6 +77,60 @@ pub fn render_pixel(
     )
 }
 
+/// What a pixel must hold where its ray has found this hit on this surface.
+#[inline]
+fn show(
+    shading: u32,
+    ray: &Ray,
+    hit: Hit,
+    surface: Surface,
+    material_ids: &[u32],
+    materials: &[Material],
+) -> Pixel {
+    let index = hit.sphere as usize;
+    let seen = Seen {
+        ray: *ray,
+        hit,
+        surface,
+        material: material_of(index, material_ids, materials),
+        tag: read(material_ids, index),
+    };
+    Pixel::new(shade(shading, seen), hit.t)
+}
+
+/// Renders one pixel of a launch among shapes beside spheres, after [`render_pixel`]: a shape
+/// counts up to the depth of `previous`. `material_ids` are those of the shapes.
+#[expect(
+    clippy::too_many_arguments,
+    reason = "these are the kernel's bindings, one each"
+)]
+#[inline]
+#[must_use]
+pub fn render_pixel_of_shapes(
+    shading: u32,
+    rung: u32,
+    launch: &Launch,
+    shapes: &Shapes<'_>,
+    material_ids: &[u32],
+    materials: &[Material],
+    pixel: UVec2,
+    previous: &Pixel,
+) -> Pixel {
+    let later = Launch {
+        first_of_tile: 0,
+        ..*launch
+    };
+    let ray = later.ray(pixel, previous);
+    let none = Hit::NONE_SPHERE;
+    let hit = shapes.nearest_hit(rung, &ray, Hit::NONE, none, Resting);
+    if hit.is_some() {
+        let surface = shapes.surface(&ray, hit.t, hit.sphere, Resting);
+        show(shading, &ray, hit, surface, material_ids, materials)
+    } else {
+        *previous
+    }
+}
+
 impl Launch {
     /// The ray through a pixel, which counts from the upper left of the tile. It ends at the depth
     /// of
@@ -130,16 +186,8 @@ impl Launch {
     ) -> Pixel {
         let mut result = otherwise;
         if hit.is_some() {
-            let index = hit.sphere as usize;
-            let sphere = read(spheres, index);
-            let seen = Seen {
-                ray: *ray,
-                hit,
-                surface: Surface::at(ray, hit.t, sphere),
-                material: material_of(index, material_ids, materials),
-                tag: read(material_ids, index),
-            };
-            result = Pixel::new(shade(shading, seen), hit.t);
+            let surface = Surface::at(ray, hit.t, read(spheres, hit.sphere as usize));
+            result = show(shading, ray, hit, surface, material_ids, materials);
         }
         result
     }

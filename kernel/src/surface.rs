@@ -22,6 +22,13 @@ pub struct Surface {
 }
 
 impl Surface {
+    /// Where there is none.
+    pub const NONE: Self = Self {
+        point: Vec3::ZERO,
+        normal: Vec3::ZERO,
+        error: 0.0,
+    };
+
     /// The surface of `sphere` where `ray` has the parameter `t`.
     #[inline]
     #[must_use]

@@ -7,6 +7,7 @@ mod light;
 mod material;
 mod particles;
 mod reader;
+mod shape;
 mod sky;
 mod sphere;
 mod split;
@@ -34,6 +35,7 @@ use light::LightTable;
 use material::MaterialTable;
 use particles::ParticlesTable;
 use reader::Reader;
+use shape::{BoxTable, CapsuleTable, ConeTable, CylinderTable, DiscTable, EllipsoidTable};
 use sky::SkyTable;
 use sphere::{Known, Row, SphereTable};
 use split::{Batch, Piece, SplitText};
@@ -50,6 +52,18 @@ struct File {
     /// Spheres in one list, `sphere = [{ center = … }, …]`.
     #[serde(default, rename = "sphere")]
     spheres: Vec<Spanned<SphereTable>>,
+    #[serde(default, rename = "capsule")]
+    capsules: Vec<Spanned<CapsuleTable>>,
+    #[serde(default, rename = "cylinder")]
+    cylinders: Vec<Spanned<CylinderTable>>,
+    #[serde(default, rename = "cone")]
+    cones: Vec<Spanned<ConeTable>>,
+    #[serde(default, rename = "ellipsoid")]
+    ellipsoids: Vec<Spanned<EllipsoidTable>>,
+    #[serde(default, rename = "box")]
+    boxes: Vec<Spanned<BoxTable>>,
+    #[serde(default, rename = "disc")]
+    discs: Vec<Spanned<DiscTable>>,
     particles: Option<ParticlesTable>,
     #[serde(default, rename = "light")]
     lights: Vec<LightTable>,
@@ -222,11 +236,29 @@ impl Reader<'_> {
             }
             self.count(&world)?;
         }
+        for table in &file.capsules {
+            self.shape(table, &known, &mut world, &mut grey)?;
+        }
+        for table in &file.cylinders {
+            self.shape(table, &known, &mut world, &mut grey)?;
+        }
+        for table in &file.cones {
+            self.shape(table, &known, &mut world, &mut grey)?;
+        }
+        for table in &file.ellipsoids {
+            self.shape(table, &known, &mut world, &mut grey)?;
+        }
+        for table in &file.boxes {
+            self.shape(table, &known, &mut world, &mut grey)?;
+        }
+        for table in &file.discs {
+            self.shape(table, &known, &mut world, &mut grey)?;
+        }
         if let Some(atoms) = atoms {
             world.append(&look::world(atoms, self.origin));
             self.count(&world)?;
         }
-        if world.spheres.is_empty() {
+        if world.spheres.is_empty() && world.shapes.is_empty() {
             return Err(SceneError::without_place(
                 self.path,
                 "the scene has no spheres",

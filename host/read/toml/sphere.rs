@@ -4,6 +4,7 @@ use serde::Deserialize;
 use std::collections::BTreeMap;
 
 use glam::Vec3;
+use spherule_kernel::shape::Shape;
 use spherule_kernel::{Material, Sphere};
 use toml::Spanned;
 
@@ -11,8 +12,8 @@ use super::reader::Reader;
 use super::split::{Batch, Piece};
 use super::value::Value;
 use super::value::said;
-use crate::error::{Error, Result};
-use crate::scene::{World, limits};
+use crate::error::{Error, Result, SceneError};
+use crate::scene::{World, limits, shapes};
 use crate::shown::shown;
 
 #[derive(Deserialize)]
@@ -86,20 +87,7 @@ impl Reader<'_> {
         let table = table.get_ref();
         let (material, hollow) = match &table.material {
             Some(value) => {
-                let name = self.text("material", value)?;
-                let (id, hollow) = *known.ids.get(name).ok_or_else(|| {
-                    let names: Vec<&str> = known.ids.keys().copied().collect();
-                    self.wrong(
-                        value,
-                        format!("there is no material \"{}\"", shown(name)),
-                        "not defined",
-                        if names.is_empty() {
-                            format!("define it: [materials.{}] with kind = \"diffuse\" and color = [r, g, b]", shown(name))
-                        } else {
-                            format!("the scene defines {}", shown(&names.join(", ")))
-                        },
-                    )
-                })?;
+                let (id, hollow) = self.named_material(value, known)?;
                 (Some(id), hollow)
             }
             None => (None, None),
@@ -142,6 +130,77 @@ impl Reader<'_> {
         })
     }
 
+    /// The material with the name that a table gives.
+    fn named_material(&self, value: &Spanned<Value>, known: &Known<'_>) -> Result<NamedMaterial> {
+        let name = self.text("material", value)?;
+        let named = known.ids.get(name).copied();
+        named.ok_or_else(|| {
+            let names: Vec<&str> = known.ids.keys().copied().collect();
+            let help = if names.is_empty() {
+                format!(
+                    "define it: [materials.{}] with kind = \"diffuse\" and color = [r, g, b]",
+                    shown(name)
+                )
+            } else {
+                format!("the scene defines {}", shown(&names.join(", ")))
+            };
+            let message = format!("there is no material \"{}\"", shown(name));
+            self.wrong(value, message, "not defined", help).into()
+        })
+    }
+
+    /// The same of a shape beside the spheres, which may not be hollow; `None` for grey.
+    pub(super) fn material_of_shape(
+        &self,
+        value: Option<&Spanned<Value>>,
+        known: &Known<'_>,
+        what: &str,
+    ) -> Result<Option<u32>> {
+        let Some(value) = value else {
+            return Ok(None);
+        };
+        let (id, hollow) = self.named_material(value, known)?;
+        if hollow.is_some() {
+            return Err(self
+                .wrong(
+                    value,
+                    format!("this {what} is of hollow glass"),
+                    "has a thickness",
+                    "give it a material without thickness: only spheres may be hollow",
+                )
+                .into());
+        }
+        Ok(Some(id))
+    }
+
+    /// Fails for a shape beside the spheres that reaches, or moves, too far.
+    pub(super) fn reaches(
+        &self,
+        place: &Spanned<Value>,
+        shape: &Shape,
+        velocity: Vec3,
+        shutter: (f32, f32),
+    ) -> Result<()> {
+        if shapes::is_within(shape, velocity, shutter) {
+            return Ok(());
+        }
+        Err(self.too_far(place, shape.name(), velocity).into())
+    }
+
+    fn too_far(&self, place: &Spanned<Value>, what: &str, velocity: Vec3) -> Box<SceneError> {
+        let how = if velocity == Vec3::ZERO {
+            "reaches"
+        } else {
+            "reaches, or moves while the shutter is open,"
+        };
+        self.wrong(
+            place,
+            format!("this {what} {how} beyond {:e}", limits::MAX_LENGTH),
+            "with its radius, too far from the origin",
+            "use a larger unit of length",
+        )
+    }
+
     /// Fails for a sphere that reaches, or moves, too far.
     pub(super) fn is_within(
         &self,
@@ -153,19 +212,7 @@ impl Reader<'_> {
         if limits::is_within(sphere, velocity, shutter) {
             return Ok(());
         }
-        let how = if velocity == Vec3::ZERO {
-            "reaches"
-        } else {
-            "reaches, or moves while the shutter is open,"
-        };
-        Err(self
-            .wrong(
-                center,
-                format!("this sphere {how} beyond {:e}", limits::MAX_LENGTH),
-                "with its radius, too far from the origin",
-                "use a larger unit of length",
-            )
-            .into())
+        Err(self.too_far(center, "sphere", velocity).into())
     }
 }
 
@@ -178,6 +225,14 @@ type NamedMaterial = (u32, Option<(f32, u32)>);
 pub(super) struct Known<'a> {
     pub(super) ids: BTreeMap<&'a str, NamedMaterial>,
     pub(super) shutter: (f32, f32),
+}
+
+impl Known<'_> {
+    /// The material of what has none: `grey`, once it exists.
+    pub(super) fn grey(world: &mut World, grey: &mut Option<u32>) -> u32 {
+        let diffuse = Material::diffuse(Vec3::splat(0.5));
+        *grey.get_or_insert_with(|| world.add_material(diffuse))
+    }
 }
 
 /// A sphere as its table describes it.
@@ -193,10 +248,7 @@ pub(super) struct Row {
 impl Row {
     /// Adds the sphere to `world`. `grey` is the material of spheres without one, once it exists.
     pub(super) fn add_to(self, world: &mut World, grey: &mut Option<u32>) {
-        let id = self.material.unwrap_or_else(|| {
-            let diffuse = Material::diffuse(Vec3::splat(0.5));
-            *grey.get_or_insert_with(|| world.add_material(diffuse))
-        });
+        let id = self.material.unwrap_or_else(|| Known::grey(world, grey));
         for (sphere, id) in std::iter::once((self.sphere, id)).chain(self.hollow) {
             if self.velocity == Vec3::ZERO {
                 world.add(sphere, id);

@@ -487,6 +487,10 @@ fn each_key_of_the_effects_refuses_what_it_cannot_be() {
 
 /// The reader, the schema and the documentation of keys have the same keys.
 #[test]
+#[expect(
+    clippy::too_many_lines,
+    reason = "one table, an entry a table of the file"
+)]
 fn the_schema_and_the_docs_list_every_key() {
     let schema: serde_json::Value =
         serde_json::from_str(include_str!("../../../scenes/scene.schema.json")).expect("JSON");
@@ -513,6 +517,36 @@ fn the_schema_and_the_docs_list_every_key() {
             "[[sphere]]",
             &root["sphere"]["items"]["properties"],
             "[[sphere]]\nzzz = 1\n",
+        ),
+        (
+            "[[capsule]]",
+            &root["capsule"]["items"]["properties"],
+            "[[capsule]]\nzzz = 1\n",
+        ),
+        (
+            "[[cylinder]]",
+            &root["cylinder"]["items"]["properties"],
+            "[[cylinder]]\nzzz = 1\n",
+        ),
+        (
+            "[[cone]]",
+            &root["cone"]["items"]["properties"],
+            "[[cone]]\nzzz = 1\n",
+        ),
+        (
+            "[[ellipsoid]]",
+            &root["ellipsoid"]["items"]["properties"],
+            "[[ellipsoid]]\nzzz = 1\n",
+        ),
+        (
+            "[[box]]",
+            &root["box"]["items"]["properties"],
+            "[[box]]\nzzz = 1\n",
+        ),
+        (
+            "[[disc]]",
+            &root["disc"]["items"]["properties"],
+            "[[disc]]\nzzz = 1\n",
         ),
         (
             "[[light]]",

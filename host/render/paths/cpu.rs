@@ -207,6 +207,7 @@ fn trace<const EFFECTS: u32, const RUNG: u32>(
         launch,
         traversal: Single::new(rung, prepared.nodes.tree(), levels),
         spheres: &world.spheres,
+        shapes: prepared.shapes.shapes(launch.first_shape),
         velocities: &prepared.velocities,
         material_ids: &world.material_ids,
         materials: &world.materials,

@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 use glam::{UVec2, Vec4};
 use spherule_kernel::accel::node::Node;
 use spherule_kernel::material::microfacet::ALBEDO_LEN;
+use spherule_kernel::shape::{Kinds, Shape};
 use spherule_kernel::{Accumulator, Effects, Light, Material, PathLaunch, Sphere};
 
 use super::adaptive::{self, Adaptive, Goal, Tracer, take_samples, tiles_of};
@@ -53,10 +54,11 @@ pub fn compile(gpu: &Gpu, prepared: &Prepared, settings: &Settings) -> Result<Ke
     let module = rung::module(gpu, settings.rung)?
         .specialise(Effects::SPEC_ID, prepared.compiled.to_bits())?
         .specialise(Effects::IS_EXACT_SPEC_ID, is_exact.into())?
-        .specialise(Node::SPEC_ID, u32::from(!prepared.nodes.is_empty()))?;
-    let mut access = vec![Access::Read; 10];
+        .specialise(Node::SPEC_ID, u32::from(!prepared.nodes.is_empty()))?
+        .specialise(Kinds::SPEC_ID, prepared.shapes.kinds.to_bits())?;
+    let mut access = vec![Access::Read; 12];
     access[0] = Access::Uniform;
-    access[9] = Access::ReadWrite;
+    access[11] = Access::ReadWrite;
     gpu.kernel(&module, ENTRY, &access)
 }
 
@@ -73,6 +75,8 @@ struct Launcher<'a> {
     tables: Buffer<f32>,
     texels: Buffer<f32>,
     nodes: Buffer<Node>,
+    shapes: Buffer<Shape>,
+    shape_nodes: Buffer<Node>,
     sums: Buffer<Accumulator>,
     /// What they are read through.
     staging: Staging,
@@ -112,6 +116,8 @@ impl<'a> Launcher<'a> {
             tables: gpu.upload("tables", &prepared.tables)?,
             texels: gpu.upload("texels", &prepared.texels)?,
             nodes: gpu.upload("nodes", &prepared.nodes)?,
+            shapes: gpu.upload("shapes", &prepared.shapes.shapes)?,
+            shape_nodes: gpu.upload("nodes of shapes", &prepared.shapes.nodes)?,
             staging: gpu.staging(&sums, pixels)?,
             sums,
             most_rows: Tiles::most_rows(gpu),
@@ -164,6 +170,8 @@ impl<'a> Launcher<'a> {
                     self.tables.binding(),
                     self.texels.binding(),
                     self.nodes.binding(),
+                    self.shapes.binding(),
+                    self.shape_nodes.binding(),
                     self.sums.binding_of(range),
                 ],
                 self.kernel.workgroups_for([width, rows, 1]),

@@ -13,7 +13,7 @@ use spherule_kernel::{Effects, Hit, Light, PathLaunch};
 
 use super::lights::lights;
 use super::rebase::rebased;
-use crate::accel::{self, Acceleration, Nodes};
+use crate::accel::{self, Acceleration, Nodes, ShapeTree};
 use crate::error::Result;
 use crate::render::EffectChoice;
 use crate::render::whole_image;
@@ -23,13 +23,16 @@ use crate::scene::{Scene, World};
 /// What the kernel is told of a scene, besides its world.
 #[derive(Clone, Debug)]
 pub struct Prepared {
-    /// The world, in the order of the tree's leaves if there is a tree.
+    /// The world, in the order of the tree's leaves if there is a tree. The materials of shapes
+    /// follow those of spheres.
     pub world: World,
     /// The nodes of the tree; empty if there is none.
     pub nodes: Nodes,
+    /// The shapes beside the spheres, and the tree over them.
+    pub shapes: ShapeTree,
     /// The launch that covers the whole image and no samples yet.
     pub launch: PathLaunch,
-    /// For each sphere, how it moves; empty if none does.
+    /// For each sphere and then for each shape, how it moves; empty if none does.
     pub velocities: Vec<Vec4>,
     /// The lights that are looked for.
     pub lights: Vec<Light>,
@@ -73,7 +76,8 @@ impl Prepared {
         if shown.any(Effects::NESTED_GLASS) {
             world = Cow::Owned(world.with_absolute_glass());
         }
-        let (world, nodes) = match accel::build(
+        let shapes = ShapeTree::of(&world, shutter);
+        let (mut world, nodes) = match accel::build(
             &world.spheres,
             &world.velocities,
             shutter,
@@ -103,7 +107,8 @@ impl Prepared {
             called_effects: shown.to_bits(),
             has_ambient_sky: scene.sky.is_some().into(),
             first_caster,
-            has_plain_sky: u32::from(has_plain_sky(scene)),
+            first_shape: world.spheres.len() as u32,
+            has_plain_sky: u32::from(has_plain_sky(scene) || scene.has_glowing_shapes()),
             indirect_limit: scene.sampling.clamp.unwrap_or(0.0),
             glass_at_eye: glass_at_eye(&world, view.eye),
             sky,
@@ -111,15 +116,13 @@ impl Prepared {
             filter: scene.sampling.filter,
             ..PathLaunch::default()
         };
-        let velocities = if shown.any(Effects::MOTION_BLUR) {
-            let velocities = world.velocities.iter();
-            velocities.map(|velocity| velocity.extend(0.0)).collect()
-        } else {
-            Vec::new()
-        };
+        let velocities = velocities(&world, &shapes, shown);
+        world.material_ids.resize(world.spheres.len(), 0);
+        world.material_ids.extend(&shapes.material_ids);
         Ok(Self {
             world,
             nodes,
+            shapes,
             launch,
             velocities,
             lights,
@@ -134,6 +137,19 @@ impl Prepared {
             },
         })
     }
+}
+
+/// How each sphere and then each shape moves; empty if none does.
+fn velocities(world: &World, shapes: &ShapeTree, shown: Effects) -> Vec<Vec4> {
+    if !shown.any(Effects::MOTION_BLUR) {
+        return Vec::new();
+    }
+    let mut velocities: Vec<Vec4> = world.velocities.iter().map(|v| v.extend(0.0)).collect();
+    if !shapes.velocities.is_empty() {
+        velocities.resize(world.spheres.len(), Vec4::ZERO);
+        velocities.extend(shapes.velocities.iter().map(|v| v.extend(0.0)));
+    }
+    velocities
 }
 
 /// The glass spheres that hold the eye, as [`PathLaunch::glass_at_eye`] has them.
@@ -175,6 +191,11 @@ fn fog(scene: &Scene, eye: Vec3) -> Fog {
             let radius = DVec3::splat(sphere.radius().into());
             low = low.min(center - radius);
             high = high.max(center + radius);
+        }
+        for shape in &scene.world.shapes {
+            let (lowest, highest) = shape.bounds();
+            low = low.min(lowest.as_dvec3());
+            high = high.max(highest.as_dvec3());
         }
         medium.center = ((low + high) * 0.5).as_vec3();
         medium.radius = ((high - low).length() * 0.5) as f32;

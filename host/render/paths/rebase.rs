@@ -21,8 +21,9 @@ pub(super) fn rebased(scene: &Scene) -> Option<Scene> {
         (rounded.as_dvec3() == difference).then_some(rounded)
     };
     let (eye, target) = (moved(view.eye)?, moved(view.target)?);
-    // Where a sphere in motion is would be rounded in another place.
-    if !scene.world.velocities.is_empty() {
+    // Where a sphere in motion is would be rounded in another place; other shapes stay where they
+    // are.
+    if !scene.world.velocities.is_empty() || !scene.world.shapes.is_empty() {
         return None;
     }
     let spheres = scene.world.spheres.iter();

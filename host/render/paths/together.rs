@@ -180,16 +180,42 @@ impl Rays {
         if scenery.effects.any(Effects::MOTION_BLUR) && !scenery.velocities.is_empty() {
             // Each ray meets spheres where they are at its own time.
             hits.extend(asked.map(|(ray, left, time)| {
-                single.trace_one::<ANY, _>(&ray, &scenery.spheres_at(time, left))
+                let hit = single.trace_one::<ANY, _>(&ray, &scenery.spheres_at(time, left));
+                or_shape::<ANY>(scenery, hit, (ray, left, time))
             }));
             return hits;
         }
         rays.clear();
         lefts.clear();
         rays.extend(asked.clone().map(|(ray, ..)| ray));
-        lefts.extend(asked.map(|(_, left, _)| left));
+        lefts.extend(asked.clone().map(|(_, left, _)| left));
         hits.resize(rays.len(), Hit::NONE);
         single.trace::<ANY>(rays, lefts, scenery.spheres, |index, hit| hits[index] = hit);
+        if !scenery.shapes.kinds.is_empty() {
+            for (hit, asked) in hits.iter_mut().zip(asked) {
+                *hit = or_shape::<ANY>(scenery, *hit, asked);
+            }
+        }
         hits
     }
+}
+
+/// A hit among the spheres, or the hit of a shape if that is nearer; with `ANY` some hit at all. A
+/// ray comes as it is asked for in [`Rays::trace`].
+#[inline]
+fn or_shape<const ANY: bool>(
+    scenery: &Scenery<'_, Single<'_>>,
+    hit: Hit,
+    (ray, left, time): (Ray, u32, f32),
+) -> Hit {
+    if !ANY {
+        return scenery.or_shape(&ray, hit, left, time);
+    }
+    if !hit.is_some() && scenery.is_blocked_by_shape(&ray, left, time) {
+        return Hit {
+            t: ray.t_min,
+            sphere: scenery.shapes.first,
+        };
+    }
+    hit
 }

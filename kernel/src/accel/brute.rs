@@ -4,11 +4,14 @@
 use glam::Vec4;
 use spirv_std::arch::IndexUnchecked;
 
+use super::node::Extent;
+use super::primitives::Primitives;
+use super::slabs::Slabs;
 use crate::arithmetic::elements::read;
-use crate::cull::bounds::Line;
+use crate::cull::bounds::{Bounds, Line};
 use crate::effects::Effects;
 use crate::hit::Hit;
-use crate::precision::{Rung, entry_or_defer, intersect, intersect_or_defer};
+use crate::precision::{Rung, entry_or_defer, intersect, intersect_at_once, intersect_or_defer};
 use crate::ray::Ray;
 use crate::sphere::Sphere;
 
@@ -43,43 +46,70 @@ pub trait Spheres {
     }
 }
 
-/// Whether a ray passes over the sphere with this index: one that asks for any hit, or one that
-/// asks for the nearest.
-#[inline]
-pub(super) fn passes_over<const ANY: bool, S: Spheres + ?Sized>(spheres: &S, index: u32) -> bool {
-    if ANY {
-        spheres.is_passed(index)
-    } else {
-        spheres.is_left(index)
-    }
-}
+impl<S: Spheres + ?Sized> Primitives for S {
+    type One = Sphere;
 
-/// [`intersect_or_defer`], or [`intersect`] for spheres about which nothing is deferred.
-#[inline]
-pub(super) fn ask<S: Spheres + ?Sized>(rung: u32, sphere: Sphere, ray: &Ray) -> f32 {
-    if S::MAY_DEFER {
-        intersect_or_defer(rung, sphere, ray)
-    } else {
-        intersect(rung, sphere, ray)
-    }
-}
+    const HAVE_BOUNDS: bool = true;
 
-/// [`entry_or_defer`], or [`intersect`] for spheres about which nothing is deferred. The ray enters
-/// between two parameters of the line.
-#[inline]
-pub(super) fn ask_entry<S: Spheres + ?Sized>(
-    rung: u32,
-    sphere: Sphere,
-    ray: &Ray,
-    line: &Line,
-    low: f32,
-    high: f32,
-) -> f32 {
-    if S::MAY_DEFER {
-        let one = 1.0 / line.unit;
-        entry_or_defer(rung, sphere, ray, low * one, high * one)
-    } else {
-        intersect(rung, sphere, ray)
+    #[inline]
+    fn total(&self) -> u32 {
+        self.count()
+    }
+
+    #[inline]
+    unsafe fn one(&self, index: u32) -> Sphere {
+        // SAFETY: the caller ensures that `index` is below their number.
+        unsafe { self.sphere(index) }
+    }
+
+    #[inline]
+    fn is_passed_over<const ANY: bool>(&self, index: u32) -> bool {
+        if ANY {
+            self.is_passed(index)
+        } else {
+            self.is_left(index)
+        }
+    }
+
+    /// [`intersect_or_defer`], or [`intersect`] for spheres about which nothing is deferred.
+    #[inline]
+    fn ask(rung: u32, sphere: Sphere, ray: &Ray) -> f32 {
+        if S::MAY_DEFER {
+            intersect_or_defer(rung, sphere, ray)
+        } else {
+            intersect(rung, sphere, ray)
+        }
+    }
+
+    #[inline]
+    fn ask_at_once(rung: u32, sphere: Sphere, ray: &Ray) -> f32 {
+        intersect_at_once(rung, sphere, ray)
+    }
+
+    /// [`entry_or_defer`], or [`intersect`] for spheres about which nothing is deferred.
+    #[inline]
+    fn ask_entry(rung: u32, sphere: Sphere, ray: &Ray, line: &Line, low: f32, high: f32) -> f32 {
+        if S::MAY_DEFER {
+            let one = 1.0 / line.unit;
+            entry_or_defer(rung, sphere, ray, low * one, high * one)
+        } else {
+            intersect(rung, sphere, ray)
+        }
+    }
+
+    #[inline]
+    fn bounds(line: &Line, sphere: Sphere) -> Bounds {
+        line.bounds(sphere)
+    }
+
+    #[inline]
+    fn may_hit(line: &Line, sphere: Sphere) -> bool {
+        line.may_hit(sphere)
+    }
+
+    #[inline]
+    fn slabs(rung: u32, ray: &Ray, world: &Extent) -> Slabs {
+        Slabs::of(rung, ray, world)
     }
 }
 
@@ -265,7 +295,7 @@ pub fn nearest_hit_by_bounds<S: Spheres + ?Sized>(
             let mut asked = if low < end { hit } else { index };
             loop {
                 // SAFETY: both are below the number of spheres.
-                let answer = ask::<S>(rung, unsafe { spheres.sphere(asked) }, ray);
+                let answer = S::ask(rung, unsafe { spheres.sphere(asked) }, ray);
                 if (answer < t) | ((answer == t) & (asked < hit)) {
                     (t, hit) = (answer, asked);
                 }
@@ -282,7 +312,7 @@ pub fn nearest_hit_by_bounds<S: Spheres + ?Sized>(
     if low < end {
         // SAFETY: a sphere was found that begins at `low` or later.
         let sphere = unsafe { spheres.sphere(hit) };
-        t = ask_entry::<S>(rung, sphere, ray, &line, low, end);
+        t = S::ask_entry(rung, sphere, ray, &line, low, end);
     }
     if t < ray.t_max {
         Hit { t, sphere: hit }

@@ -63,6 +63,13 @@ impl Slabs {
     #[inline(always)]
     #[must_use]
     pub fn of(rung: u32, ray: &Ray, world: &Extent) -> Self {
+        Self::widened(ray, world, world.widening(rung, ray.origin))
+    }
+
+    /// Prepares a ray for a tree of this extent, whose boxes must be so much wider, in scene units.
+    #[inline(always)]
+    #[must_use]
+    pub fn widened(ray: &Ray, world: &Extent, widening: f32) -> Self {
         let scale = power_of_two_under(ray.direction);
         // 1 / scale: the exponents add up to twice that of one.
         let unit = f32::from_bits(0x7f00_0000_u32.wrapping_sub(scale.to_bits()));
@@ -71,7 +78,7 @@ impl Slabs {
         let size = world.low.abs().max(world.high.abs())
             + ray.origin.abs()
             + (world.high - world.low) * 2.0;
-        let off = size * (16.0 * U) + world.widening(rung, ray.origin);
+        let off = size * (16.0 * U) + widening;
         let start = ray.t_min * unit;
         let first = -ray.origin * inverse - start;
         let slack = inverse.abs() * off + start.abs() * (16.0 * U);

@@ -8,7 +8,7 @@ use spirv_std::arch::{
 };
 use spirv_std::memory::{Scope, Semantics};
 
-use super::brute::ask_entry;
+use super::primitives::Primitives as _;
 use crate::cull::bounds::Line;
 use crate::cull::cone::{Cone, Sight};
 use crate::cull::frustum::{Frustum, Plane};
@@ -445,7 +445,7 @@ fn render_listed(
     if is_lazy & (low < high) {
         // SAFETY: listed indices are below the number of spheres.
         let sphere = unsafe { *spheres.index_unchecked(nearest.sphere as usize) };
-        nearest.t = ask_entry::<[Sphere]>(rung, sphere, &ray, &line, low, high);
+        nearest.t = <[Sphere]>::ask_entry(rung, sphere, &ray, &line, low, high);
     }
     if (rung == DEFERRING) & nearest.is_deferred() {
         // SAFETY: all threads count by atomic additions.

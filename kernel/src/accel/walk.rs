@@ -16,20 +16,20 @@ use core::mem::MaybeUninit;
 use glam::{UVec2, UVec4};
 use spirv_std::arch::IndexUnchecked;
 
-use super::brute::{Spheres, ask, ask_entry, passes_over};
 use super::node::{Extent, Node, Tree, point};
-use super::slabs::{FIRST_OF_FOUR, Slabs, load};
+use super::primitives::Primitives;
+use super::slabs::{FIRST_OF_FOUR, load};
 use crate::cull::bounds::Line;
 use crate::gpu::instructions::{highest_bit, lowest_bit};
 use crate::hit::Hit;
-use crate::precision::{intersect_at_once, is_lazy};
+use crate::precision::is_lazy;
 use crate::ray::Ray;
 
 /// The nearest hit of `ray` on this rung among the spheres of a tree; of two equally near hits, the
 /// one with the lower index.
 #[inline]
 #[must_use]
-pub fn nearest_hit_in_tree<S: Spheres + ?Sized>(
+pub fn nearest_hit_in_tree<S: Primitives + ?Sized>(
     rung: u32,
     ray: &Ray,
     tree: Tree<'_>,
@@ -41,7 +41,7 @@ pub fn nearest_hit_in_tree<S: Spheres + ?Sized>(
 /// Any hit of `ray` among the spheres of a tree; its parameter need not be that of the hit.
 #[inline]
 #[must_use]
-pub fn any_hit_in_tree<S: Spheres + ?Sized>(
+pub fn any_hit_in_tree<S: Primitives + ?Sized>(
     rung: u32,
     ray: &Ray,
     tree: Tree<'_>,
@@ -53,7 +53,7 @@ pub fn any_hit_in_tree<S: Spheres + ?Sized>(
 /// Whether `ray` hits any sphere of a tree.
 #[inline]
 #[must_use]
-pub fn is_occluded_in_tree<S: Spheres + ?Sized>(
+pub fn is_occluded_in_tree<S: Primitives + ?Sized>(
     rung: u32,
     ray: &Ray,
     tree: Tree<'_>,
@@ -74,7 +74,7 @@ pub struct Work {
 /// How many tests `ray` takes in a tree: to find the nearest hit, or with `any` the first hit at
 /// all.
 #[must_use]
-pub fn work_in_tree<S: Spheres + ?Sized>(
+pub fn work_in_tree<S: Primitives + ?Sized>(
     rung: u32,
     any: bool,
     ray: &Ray,
@@ -129,23 +129,23 @@ fn within(index: u32, length: u32) -> u32 {
               are in a struct"
 )]
 #[inline]
-fn walk<const ANY: bool, S: Spheres + ?Sized>(
+fn walk<const ANY: bool, S: Primitives + ?Sized>(
     rung: u32,
     ray: &Ray,
     tree: Tree<'_>,
     spheres: &S,
     work: &mut Work,
 ) -> Hit {
-    let (nodes, count) = (tree.nodes(), spheres.count());
+    let (nodes, count) = (tree.nodes(), spheres.total());
     if (nodes.len() <= Node::ROOT as usize) | (count == 0) {
         return Hit::NONE;
     }
     // SAFETY: there is more than one node.
     let world = Extent::of_node(unsafe { nodes.index_unchecked(0) });
-    let slabs = Slabs::of(rung, ray, &world);
+    let slabs = S::slabs(rung, ray, &world);
     let line = Line::of(ray);
     // Lazy rungs are slow: they are evaluated once, for the nearest sphere, when it is found.
-    let is_lazy = is_lazy(rung);
+    let is_lazy = S::HAVE_BOUNDS & is_lazy(rung);
     let ray = &Ray {
         t_max: ray.end(),
         ..*ray
@@ -203,13 +203,13 @@ fn walk<const ANY: bool, S: Spheres + ?Sized>(
                 leaves = rest;
                 let indices = [sphere_at(links, one, count), sphere_at(links, two, count)];
                 // SAFETY: both are below the number of spheres.
-                let pair = unsafe { [spheres.sphere(indices[0]), spheres.sphere(indices[1])] };
+                let pair = unsafe { [spheres.one(indices[0]), spheres.one(indices[1])] };
                 let are_left = [
-                    passes_over::<ANY, S>(spheres, indices[0]),
-                    passes_over::<ANY, S>(spheres, indices[1]),
+                    spheres.is_passed_over::<ANY>(indices[0]),
+                    spheres.is_passed_over::<ANY>(indices[1]),
                 ];
                 if is_lazy {
-                    let [first, second] = [line.bounds(pair[0]), line.bounds(pair[1])];
+                    let [first, second] = [S::bounds(&line, pair[0]), S::bounds(&line, pair[1])];
                     if first.hits & (first.high < low) & !are_left[0] {
                         (hit_sphere, low, end) = (indices[0], first.low, first.high);
                     } else {
@@ -222,8 +222,8 @@ fn walk<const ANY: bool, S: Spheres + ?Sized>(
                         candidates |= u32::from(is_open) << two;
                     }
                 } else {
-                    candidates |= u32::from(line.may_hit(pair[0]) & !are_left[0]) << one;
-                    candidates |= u32::from(line.may_hit(pair[1]) & !are_left[1]) << two;
+                    candidates |= u32::from(S::may_hit(&line, pair[0]) & !are_left[0]) << one;
+                    candidates |= u32::from(S::may_hit(&line, pair[1]) & !are_left[1]) << two;
                 }
                 if (leaves == 0) | (is_lazy & ANY & (low < end)) {
                     break;
@@ -244,8 +244,8 @@ fn walk<const ANY: bool, S: Spheres + ?Sized>(
                     sphere_at(links, bit, count)
                 };
                 // SAFETY: `index` is below the number of spheres.
-                let sphere = unsafe { spheres.sphere(index) };
-                let answer = ask::<S>(rung, sphere, ray);
+                let sphere = unsafe { spheres.one(index) };
+                let answer = S::ask(rung, sphere, ray);
                 if (answer < t) | ((answer == t) & (index < hit_sphere)) {
                     (t, hit_sphere) = (answer, index);
                 }
@@ -265,12 +265,15 @@ fn walk<const ANY: bool, S: Spheres + ?Sized>(
                 candidates = rest;
                 let indices = [sphere_at(links, one, count), sphere_at(links, two, count)];
                 // SAFETY: both are below the number of spheres.
-                let pair = unsafe { [spheres.sphere(indices[0]), spheres.sphere(indices[1])] };
+                let pair = unsafe { [spheres.one(indices[0]), spheres.one(indices[1])] };
                 let answers = [
-                    intersect_at_once(rung, pair[0], ray),
-                    intersect_at_once(rung, pair[1], ray),
+                    S::ask_at_once(rung, pair[0], ray),
+                    S::ask_at_once(rung, pair[1], ray),
                 ];
-                let are_left = [spheres.is_left(indices[0]), spheres.is_left(indices[1])];
+                let are_left = [
+                    spheres.is_passed_over::<false>(indices[0]),
+                    spheres.is_passed_over::<false>(indices[1]),
+                ];
                 let is_nearer = (answers[0] < t) | ((answers[0] == t) & (indices[0] < hit_sphere));
                 if is_nearer & !are_left[0] {
                     (t, hit_sphere) = (answers[0], indices[0]);
@@ -309,9 +312,9 @@ fn walk<const ANY: bool, S: Spheres + ?Sized>(
     let is_unasked = is_lazy & (low < end);
     if is_unasked & !ANY {
         // SAFETY: `hit_sphere` is below the number of spheres.
-        let sphere = unsafe { spheres.sphere(hit_sphere) };
+        let sphere = unsafe { spheres.one(hit_sphere) };
         // This is a miss only where numbers are beyond the range that the bounds are derived for.
-        t = ask_entry::<S>(rung, sphere, ray, &line, low, end);
+        t = S::ask_entry(rung, sphere, ray, &line, low, end);
     }
     if (t < ray.t_max) | (is_unasked & ANY) {
         Hit {

@@ -21,7 +21,7 @@ use crate::film::TILE;
 use crate::gpu::deferred;
 use crate::material::optics::{Fresnel, Incidence};
 use crate::path::{Scenery, trace_pixel};
-use crate::pixel::render_pixel;
+use crate::pixel::{render_pixel, render_pixel_of_shapes};
 use crate::precision::{DEFERRING, intersect};
 use crate::probe::canary::{Operands, Outcome, sing};
 #[cfg(any(not(target_arch = "spirv"), feature = "f64"))]
@@ -32,6 +32,7 @@ use crate::probe::throughput::products;
 #[cfg(any(not(target_arch = "spirv"), feature = "f64"))]
 use crate::probe::throughput::wide_products;
 use crate::shading::{Seen, shade};
+use crate::shape::{Kinds, Shape, Shapes};
 use crate::{
     Accumulator, Effects, Hit, Launch, Light, Material, PathLaunch, Pixel, Ray, Shading, Sphere,
     Surface,
@@ -191,6 +192,45 @@ pub fn render_by_tiles(
     );
 }
 
+/// Renders the shapes beside the spheres of a world, after [`render`] or [`render_by_tiles`].
+#[spirv(compute(threads(8, 16), entry_point_name = "render_shapes"))]
+pub fn render_shapes(
+    #[spirv(global_invocation_id)] id: UVec3,
+    #[spirv(spec_constant(id = 0, default = 0))] shading: u32,
+    #[spirv(spec_constant(id = 1, default = 1))] rung: u32,
+    #[spirv(spec_constant(id = 6, default = 0))] kinds: u32,
+    #[spirv(uniform, descriptor_set = 0, binding = 0)] launch: &Launch,
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 1)] shapes: &[Shape],
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 2)] material_ids: &[u32],
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 3)] materials: &[Material],
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 4)] nodes: &[Node],
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 5)] pixels: &mut [Pixel],
+) {
+    let pixel = UVec2::new(id.x, id.y);
+    if pixel.x < launch.tile_size.x && pixel.y < launch.tile_size.y {
+        let index = (pixel.y * launch.tile_size.x + pixel.x) as usize;
+        if index < pixels.len() {
+            let shapes = Shapes {
+                kinds: Kinds::from_bits(kinds),
+                shapes,
+                // SAFETY: the host binds a tree's nodes.
+                tree: unsafe { Tree::of_unchecked(nodes) },
+                first: 0,
+            };
+            pixels[index] = render_pixel_of_shapes(
+                shading,
+                rung,
+                launch,
+                &shapes,
+                material_ids,
+                materials,
+                pixel,
+                &pixels[index],
+            );
+        }
+    }
+}
+
 /// Adds samples to the pixels of a tile, by the effects that the pipeline holds.
 #[spirv(compute(threads(8, 8), entry_point_name = "trace_paths"))]
 pub fn trace_paths(
@@ -199,6 +239,7 @@ pub fn trace_paths(
     #[spirv(spec_constant(id = 2, default = 0))] effects: u32,
     #[spirv(spec_constant(id = 3, default = 0))] is_exact: u32,
     #[spirv(spec_constant(id = 4, default = 0))] has_tree: u32,
+    #[spirv(spec_constant(id = 6, default = 0))] kinds: u32,
     #[spirv(uniform, descriptor_set = 0, binding = 0)] launch: &PathLaunch,
     #[spirv(storage_buffer, descriptor_set = 0, binding = 1)] spheres: &[Sphere],
     #[spirv(storage_buffer, descriptor_set = 0, binding = 2)] velocities: &[Vec4],
@@ -208,7 +249,9 @@ pub fn trace_paths(
     #[spirv(storage_buffer, descriptor_set = 0, binding = 6)] tables: &[f32],
     #[spirv(storage_buffer, descriptor_set = 0, binding = 7)] texels: &[f32],
     #[spirv(storage_buffer, descriptor_set = 0, binding = 8)] nodes: &[Node],
-    #[spirv(storage_buffer, descriptor_set = 0, binding = 9)] accumulators: &mut [Accumulator],
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 9)] shapes: &[Shape],
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 10)] shape_nodes: &[Node],
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 11)] accumulators: &mut [Accumulator],
 ) {
     let pixel = UVec2::new(id.x, id.y);
     if pixel.x < launch.tile_size.x && pixel.y < launch.tile_size.y {
@@ -230,6 +273,13 @@ pub fn trace_paths(
                     tree,
                 },
                 spheres,
+                shapes: Shapes {
+                    kinds: Kinds::from_bits(kinds),
+                    shapes,
+                    // SAFETY: the host binds a tree's.
+                    tree: unsafe { Tree::of_unchecked(shape_nodes) },
+                    first: launch.first_shape,
+                },
                 velocities,
                 material_ids,
                 materials,
@@ -364,6 +414,23 @@ pub fn intersect_pairs(
     let index = id.x as usize;
     if index < rays.len() && index < spheres.len() && index < parameters.len() {
         parameters[index] = intersect(rung, spheres[index], &rays[index]);
+    }
+}
+
+/// Intersects ray i with shape i and nothing else; writes the parameter of the hit.
+#[spirv(compute(threads(64), entry_point_name = "intersect_shapes"))]
+pub fn intersect_shapes(
+    #[spirv(global_invocation_id)] id: UVec3,
+    #[spirv(spec_constant(id = 1, default = 1))] rung: u32,
+    #[spirv(spec_constant(id = 6, default = 0))] kinds: u32,
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 0)] rays: &[Ray],
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 1)] shapes: &[Shape],
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 2)] parameters: &mut [f32],
+) {
+    let index = id.x as usize;
+    if index < rays.len() && index < shapes.len() && index < parameters.len() {
+        let span = shapes[index].span(rung, Kinds::from_bits(kinds), &rays[index]);
+        parameters[index] = span.first(&rays[index]);
     }
 }
 

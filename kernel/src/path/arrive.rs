@@ -52,10 +52,12 @@ pub(super) fn arrive_at_lamp<T: Traversal>(
 ) {
     let effects = scenery.effects;
     let mut weight = 1.0;
+    // Other shapes are not looked for: paths find them by chance.
+    let is_sphere = !scenery.shapes.have(place.sphere);
     let sphere = scenery.sphere(place.sphere as usize, path.time);
     let power = luminance(radiance) * sphere.radius() * sphere.radius();
     let by_power = power * scenery.launch.sphere_light_probability;
-    if effects.any(Effects::SOFT_SHADOWS) && path.density > 0.0 {
+    if is_sphere && effects.any(Effects::SOFT_SHADOWS) && path.density > 0.0 {
         let chosen = if effects.any(Effects::MANY_LIGHTS) {
             let (point, facing) = (path.origin, path.facing);
             tree::probability_of(scenery.lights, place.sphere, point, facing)
@@ -65,7 +67,7 @@ pub(super) fn arrive_at_lamp<T: Traversal>(
         let other = chosen * light::sphere_density(sphere, path.origin);
         weight = power_heuristic(path.density, other);
     }
-    if effects.any(Effects::CAUSTICS) {
+    if is_sphere && effects.any(Effects::CAUSTICS) {
         weight *= weight_at_lamp(scenery, path, sphere, &place.surface, by_power);
     }
     let light = path.throughput * radiance * (weight * path.outside_of_glass(scenery));

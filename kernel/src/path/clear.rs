@@ -44,8 +44,7 @@ pub(super) fn through_glass<T: Traversal>(
     let mut surfaces = 0;
     while surfaces < MOST_SURFACES {
         let ray = shadow.ray_up_to(left);
-        let spheres = scenery.spheres_at(shadow.time, shadow.left);
-        let hit = shadow.or_exit(scenery.traversal.nearest_hit(&ray, &spheres));
+        let hit = shadow.or_exit(scenery.nearest_hit(&ray, shadow.left, shadow.time));
         let arrives = !hit.is_some() | (hit.t >= left);
         let way = if arrives { left } else { hit.t };
         travel(scenery, &mut shadow, way);
@@ -53,14 +52,7 @@ pub(super) fn through_glass<T: Traversal>(
             return shadow.throughput;
         }
         left -= hit.t;
-        let index = hit.sphere as usize;
-        let sphere = scenery.sphere(index, shadow.time);
-        let met = Place {
-            material: scenery.material(index),
-            radius: sphere.radius(),
-            sphere: hit.sphere,
-            surface: scenery.surface(&ray, hit.t, sphere),
-        };
+        let met = scenery.place(&ray, hit, shadow.time);
         if !pass(scenery, &mut shadow, &met) {
             return Vec3::ZERO;
         }

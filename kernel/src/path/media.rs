@@ -97,9 +97,8 @@ impl Media {
 /// The smaller of two spheres, and the other.
 #[inline]
 fn in_order<T: Traversal>(scenery: &Scenery<'_, T>, a: u32, b: u32, time: f32) -> (u32, u32) {
-    let radius = |sphere: u32| scenery.sphere(sphere as usize, time).radius().abs();
+    let size = |index: u32| scenery.size(index, time);
     let is_first = (b == Hit::NONE_SPHERE)
-        || (a != Hit::NONE_SPHERE)
-            && ((radius(a) < radius(b)) | ((radius(a) == radius(b)) & (a < b)));
+        || (a != Hit::NONE_SPHERE) && ((size(a) < size(b)) | ((size(a) == size(b)) & (a < b)));
     if is_first { (a, b) } else { (b, a) }
 }

@@ -2,6 +2,7 @@
 
 use glam::Vec4;
 
+use super::place::Place;
 use crate::accel::brute::MovingSpheres;
 use crate::accel::traversal::Traversal;
 use crate::effects::Effects;
@@ -10,6 +11,8 @@ use crate::hit::Hit;
 use crate::light::Light;
 use crate::material::{Material, material_of};
 use crate::ray::Ray;
+use crate::shape::Shapes;
+use crate::shape::among::AtTime;
 use crate::sphere::Sphere;
 use crate::surface::Surface;
 
@@ -27,9 +30,11 @@ pub struct Scenery<'a, T> {
     pub traversal: T,
     /// The spheres.
     pub spheres: &'a [Sphere],
+    /// The shapes beside them.
+    pub shapes: Shapes<'a>,
     /// How each sphere moves, in scene units per unit of time.
     pub velocities: &'a [Vec4],
-    /// For each sphere, the index of its material.
+    /// For each sphere and then for each shape, the index of its material.
     pub material_ids: &'a [u32],
     /// The materials.
     pub materials: &'a [Material],
@@ -71,6 +76,63 @@ impl<T: Traversal> Scenery<'_, T> {
         self.launch.max_bounces.min(0xfffe)
     }
 
+    /// The nearest hit of a ray, among spheres and shapes where they are at `time`, for one that
+    /// leaves the one with the index `left`.
+    #[inline]
+    pub(super) fn nearest_hit(&self, ray: &Ray, left: u32, time: f32) -> Hit {
+        let spheres = self.spheres_at(time, left);
+        let hit = self.traversal.nearest_hit(ray, &spheres);
+        self.or_shape(ray, hit, left, time)
+    }
+
+    /// A hit among the spheres, or the hit of a shape if that is nearer.
+    #[inline]
+    #[must_use]
+    pub fn or_shape(&self, ray: &Ray, hit: Hit, left: u32, time: f32) -> Hit {
+        let motion = self.motion(time);
+        self.shapes.nearest_hit(self.rung, ray, hit, left, motion)
+    }
+
+    /// Whether a ray hits a shape: see [`Scenery::or_shape`].
+    #[inline]
+    #[must_use]
+    pub fn is_blocked_by_shape(&self, ray: &Ray, left: u32, time: f32) -> bool {
+        let motion = self.motion(time);
+        self.shapes.are_hit(self.rung, ray, left, motion)
+    }
+
+    #[inline]
+    fn motion(&self, time: f32) -> AtTime<'_> {
+        AtTime {
+            effects: self.effects,
+            time,
+            velocities: self.velocities,
+        }
+    }
+
+    /// The place where a ray has a hit.
+    #[inline]
+    pub(super) fn place(&self, ray: &Ray, hit: Hit, time: f32) -> Place {
+        let index = hit.sphere as usize;
+        let material = self.material(index);
+        if self.shapes.have(hit.sphere) {
+            let motion = self.motion(time);
+            return Place {
+                material,
+                radius: 0.0,
+                sphere: hit.sphere,
+                surface: self.shapes.surface(ray, hit.t, hit.sphere, motion),
+            };
+        }
+        let sphere = self.sphere(index, time);
+        Place {
+            material,
+            radius: sphere.radius(),
+            sphere: hit.sphere,
+            surface: self.surface(ray, hit.t, sphere),
+        }
+    }
+
     /// The surface of a sphere where a ray has the parameter `t`.
     #[inline]
     pub(super) fn surface(&self, ray: &Ray, t: f32, sphere: Sphere) -> Surface {
@@ -79,6 +141,17 @@ impl<T: Traversal> Scenery<'_, T> {
             surface.refined(ray, t, sphere)
         } else {
             surface
+        }
+    }
+
+    /// The size by which the smaller of two pieces of glass is the medium where both are: the
+    /// radius of a sphere, half of the thickness of another shape.
+    #[inline]
+    pub(super) fn size(&self, index: u32, time: f32) -> f32 {
+        if self.shapes.have(index) {
+            self.shapes.size(index)
+        } else {
+            self.sphere(index as usize, time).radius().abs()
         }
     }
 
@@ -96,6 +169,6 @@ impl<T: Traversal> Scenery<'_, T> {
             target,
             ..self.spheres_at(time, left)
         };
-        self.traversal.is_occluded(ray, &spheres)
+        self.traversal.is_occluded(ray, &spheres) || self.is_blocked_by_shape(ray, left, time)
     }
 }

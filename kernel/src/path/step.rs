@@ -50,9 +50,7 @@ pub fn trace_pixel<T: Traversal>(
     let mut sampler = Sampler::of(scenery.launch, pixel, sample);
     let mut path = start(scenery, pixel, &sampler);
     while sample < end {
-        let spheres = scenery.spheres_at(path.time, path.left);
-        let hit = scenery.traversal.nearest_hit(&path.ray(), &spheres);
-        let hit = path.or_exit(hit);
+        let hit = path.or_exit(scenery.nearest_hit(&path.ray(), path.left, path.time));
         let numbers = sampler.at_vertex(path.bounces());
         if !shade(scenery, &mut path, &numbers, hit, receive_at_once) {
             path.end(scenery, sample, &mut accumulator);
@@ -256,14 +254,10 @@ fn meet_surface<T: Traversal>(
     if effects.any(Effects::GLASS) {
         path.throughput *= absorb(path.medium(scenery).absorption, hit.t);
     }
-    let index = hit.sphere as usize;
-    let sphere = scenery.sphere(index, path.time);
-    let surface = scenery.surface(ray, hit.t, sphere);
-    let material = scenery.material(index);
-    place.surface = surface;
-    place.material = material;
-    place.radius = sphere.radius();
-    place.sphere = hit.sphere;
+    *place = scenery.place(ray, hit, path.time);
+    let Place {
+        surface, material, ..
+    } = *place;
     if path.bounces() == 0 {
         path.depth = hit.t;
     }
@@ -283,6 +277,7 @@ fn meet_surface<T: Traversal>(
         }
         if continues {
             cross_glass(scenery, path, place, beyond, numbers.others().choice());
+            lose_at_shape(scenery, path, place);
             return LEAVES;
         }
         return ENDS;
@@ -300,6 +295,7 @@ fn meet_surface<T: Traversal>(
                 path.leave(place, direction, 0.0);
                 if effects.any(Effects::CAUSTICS) {
                     path.chain.mirror(place.sphere);
+                    lose_at_shape(scenery, path, place);
                 }
                 return LEAVES;
             }
@@ -311,6 +307,14 @@ fn meet_surface<T: Traversal>(
         return PLASTIC;
     }
     LAMBERT
+}
+
+/// Light is connected by spheres alone: no connection finds a path by another shape.
+#[inline]
+fn lose_at_shape<T: Traversal>(scenery: &Scenery<'_, T>, path: &mut Path, place: &Place) {
+    if scenery.effects.any(Effects::CAUSTICS) && scenery.shapes.have(place.sphere) {
+        path.chain = Chain::LOST;
+    }
 }
 
 /// Samples a light at a place that scatters by this lobe, and continues the path in a random

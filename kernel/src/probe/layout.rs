@@ -8,6 +8,7 @@ use crate::light::sky::Sky;
 use crate::material::optics::{Fresnel, Incidence};
 use crate::probe::canary::{Operands, Outcome, WideOutcome};
 use crate::probe::glass_walk::Walk;
+use crate::shape::Shape;
 use crate::{Accumulator, Camera, Hit, Launch, Light, Material, PathLaunch, Pixel, Ray, Sphere};
 use core::mem::offset_of;
 
@@ -38,6 +39,9 @@ macro_rules! layouts {
 
 layouts! {
     "size of Sphere" = size_of::<Sphere>();
+    "size of Shape" = size_of::<Shape>();
+    "Shape.second" = offset_of!(Shape, second);
+    "Shape.third" = offset_of!(Shape, third);
     "size of Ray" = size_of::<Ray>();
     "Ray.origin" = offset_of!(Ray, origin);
     "Ray.t_min" = offset_of!(Ray, t_min);
@@ -114,6 +118,7 @@ layouts! {
     "PathLaunch.is_adaptive" = offset_of!(PathLaunch, is_adaptive);
     "PathLaunch.indirect_limit" = offset_of!(PathLaunch, indirect_limit);
     "PathLaunch.first_caster" = offset_of!(PathLaunch, first_caster);
+    "PathLaunch.first_shape" = offset_of!(PathLaunch, first_shape);
     "PathLaunch.glass_at_eye" = offset_of!(PathLaunch, glass_at_eye);
     "PathLaunch.sky" = offset_of!(PathLaunch, sky);
     "PathLaunch.fog" = offset_of!(PathLaunch, fog);

@@ -149,8 +149,24 @@ pub const CALLS: &[Call] = &[
             s.draw(),
         ))
     }),
+    Call::new("spherule::accel::build::build_shapes", |s| {
+        seen(spherule::accel::build::build_shapes(
+            &s.many()[..],
+            &s.many()[..],
+            s.draw(),
+        ))
+    }),
     Call::new("spherule::accel::build::build_still", |s| {
         seen(spherule::accel::build::build_still(&s.many()[..], s.draw()))
+    }),
+    Call::new("spherule::accel::shapes::ShapeTree::of", |s| {
+        seen(spherule::accel::shapes::ShapeTree::of(&s.draw(), s.draw()))
+    }),
+    Call::new("spherule::accel::shapes::ShapeTree::shapes", |s| {
+        seen(spherule::accel::shapes::ShapeTree::shapes(
+            &s.draw(),
+            s.draw(),
+        ))
     }),
     Call::new("spherule::accel::tree::Acceleration::min_spheres", |s| {
         seen(spherule::accel::tree::Acceleration::min_spheres(
@@ -423,6 +439,37 @@ pub const CALLS: &[Call] = &[
     }),
     Call::new("spherule::accuracy::screen::screen", |s| {
         seen(spherule::accuracy::screen::screen(&s.draw(), &s.draw()))
+    }),
+    Call::new("spherule::accuracy::shape_families::Family::sample", |s| {
+        seen(spherule::accuracy::shape_families::Family::sample(
+            s.draw(),
+            s.draw(),
+            s.draw(),
+            s.few(),
+        ))
+    }),
+    Call::new("spherule::accuracy::shape_families::Known::exact", |s| {
+        seen(spherule::accuracy::shape_families::Known::exact(&s.draw()))
+    }),
+    Call::new("spherule::accuracy::shape_families::Known::shape", |s| {
+        seen(spherule::accuracy::shape_families::Known::shape(&s.draw()))
+    }),
+    Call::new(
+        "spherule::accuracy::shape_families::intersect_shapes",
+        |s| {
+            seen(spherule::accuracy::shape_families::intersect_shapes(
+                &spherule::Device::Cpu,
+                s.draw(),
+                &s.many()[..],
+            ))
+        },
+    ),
+    Call::new("spherule::accuracy::shape_families::measure", |s| {
+        seen(spherule::accuracy::shape_families::measure(
+            &spherule::Device::Cpu,
+            s.draw(),
+            &s.many()[..],
+        ))
     }),
     Call::new("spherule::bench::export::export", |s| {
         seen(spherule::bench::export::export(
@@ -1191,6 +1238,9 @@ pub const CALLS: &[Call] = &[
     Call::new("spherule::scene::Scene::new", |s| {
         seen(spherule::scene::Scene::new(s.draw()))
     }),
+    Call::new("spherule::scene::Scene::require_rung", |s| {
+        seen(spherule::scene::Scene::require_rung(&s.draw(), s.draw()))
+    }),
     Call::new("spherule::scene::Scene::samples", |s| {
         seen(spherule::scene::Scene::samples(&s.draw()))
     }),
@@ -1264,10 +1314,25 @@ pub const CALLS: &[Call] = &[
             s.draw(),
         ))
     }),
+    Call::new("spherule::scene::world::World::add_moving_shape", |s| {
+        seen(spherule::scene::world::World::add_moving_shape(
+            &mut s.draw(),
+            s.draw::<spherule_kernel::shape::Shape>(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
     Call::new("spherule::scene::world::World::add_named_material", |s| {
         seen(spherule::scene::world::World::add_named_material(
             &mut s.draw(),
             &s.text(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule::scene::world::World::add_shape", |s| {
+        seen(spherule::scene::world::World::add_shape(
+            &mut s.draw(),
+            s.draw::<spherule_kernel::shape::Shape>(),
             s.draw(),
         ))
     }),
@@ -1282,6 +1347,9 @@ pub const CALLS: &[Call] = &[
             &s.draw(),
             s.draw(),
         ))
+    }),
+    Call::new("spherule::scene::world::World::kinds", |s| {
+        seen(spherule::scene::world::World::kinds(&s.draw()))
     }),
     Call::new("spherule::scene::world::World::overlapping_glass", |s| {
         seen(spherule::scene::world::World::overlapping_glass(&s.draw()))
@@ -1530,6 +1598,13 @@ pub const CALLS: &[Call] = &[
             s.draw(),
             &s.draw(),
             &s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::accel::slabs::Slabs::widened", |s| {
+        seen(spherule_kernel::accel::slabs::Slabs::widened(
+            &s.draw(),
+            &s.draw(),
+            s.draw(),
         ))
     }),
     Call::new("spherule_kernel::accel::slabs::Slabs::widened_end", |s| {
@@ -2754,6 +2829,26 @@ pub const CALLS: &[Call] = &[
     Call::new("spherule_kernel::path::sampling::uniform_sphere", |s| {
         seen(spherule_kernel::path::sampling::uniform_sphere(s.draw()))
     }),
+    Call::new(
+        "spherule_kernel::path::scenery::Scenery::is_blocked_by_shape",
+        |s| {
+            seen(spherule_kernel::path::Scenery::is_blocked_by_shape(
+                &s.draw::<odd::OddScenery>().get(),
+                &s.draw(),
+                s.draw(),
+                s.draw(),
+            ))
+        },
+    ),
+    Call::new("spherule_kernel::path::scenery::Scenery::or_shape", |s| {
+        seen(spherule_kernel::path::Scenery::or_shape(
+            &s.draw::<odd::OddScenery>().get(),
+            &s.draw(),
+            s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
     Call::new("spherule_kernel::path::scenery::Scenery::sphere", |s| {
         seen(spherule_kernel::path::Scenery::sphere(
             &s.draw::<odd::OddScenery>().get(),
@@ -2813,6 +2908,18 @@ pub const CALLS: &[Call] = &[
             &s.draw(),
             s.draw::<odd::OddTree>().get(),
             &s.many()[..],
+            &s.many()[..],
+            &s.many()[..],
+            s.draw(),
+            &s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::pixel::render_pixel_of_shapes", |s| {
+        seen(spherule_kernel::pixel::render_pixel_of_shapes(
+            s.draw(),
+            s.draw(),
+            &s.draw(),
+            &s.draw::<odd::OddShapes>().get(),
             &s.many()[..],
             &s.many()[..],
             s.draw(),
@@ -3203,6 +3310,742 @@ pub const CALLS: &[Call] = &[
     Call::new("spherule_kernel::shading::shade", |s| {
         seen(spherule_kernel::shading::shade(s.draw(), s.draw()))
     }),
+    Call::new("spherule_kernel::shape::Kinds::and", |s| {
+        seen(spherule_kernel::shape::Kinds::and(s.draw(), s.draw()))
+    }),
+    Call::new("spherule_kernel::shape::Kinds::from_bits", |s| {
+        seen(spherule_kernel::shape::Kinds::from_bits(s.draw()))
+    }),
+    Call::new("spherule_kernel::shape::Kinds::is_empty", |s| {
+        seen(spherule_kernel::shape::Kinds::is_empty(s.draw()))
+    }),
+    Call::new("spherule_kernel::shape::Kinds::to_bits", |s| {
+        seen(spherule_kernel::shape::Kinds::to_bits(s.draw()))
+    }),
+    Call::new("spherule_kernel::shape::Shape as From#0", |s| {
+        seen(<spherule_kernel::shape::Shape as From<
+            spherule_kernel::shape::capsule::Capsule,
+        >>::from(s.draw()))
+    }),
+    Call::new("spherule_kernel::shape::Shape as From#1", |s| {
+        seen(<spherule_kernel::shape::Shape as From<
+            spherule_kernel::shape::cylinder::Cylinder,
+        >>::from(s.draw()))
+    }),
+    Call::new("spherule_kernel::shape::Shape as From#2", |s| {
+        seen(<spherule_kernel::shape::Shape as From<
+            spherule_kernel::shape::ellipsoid::Ellipsoid,
+        >>::from(s.draw()))
+    }),
+    Call::new("spherule_kernel::shape::Shape as From#3", |s| {
+        seen(<spherule_kernel::shape::Shape as From<
+            spherule_kernel::shape::cuboid::Cuboid,
+        >>::from(s.draw()))
+    }),
+    Call::new("spherule_kernel::shape::Shape as From#4", |s| {
+        seen(<spherule_kernel::shape::Shape as From<
+            spherule_kernel::shape::cone::Cone,
+        >>::from(s.draw()))
+    }),
+    Call::new("spherule_kernel::shape::Shape as From#5", |s| {
+        seen(<spherule_kernel::shape::Shape as From<
+            spherule_kernel::shape::disc::Disc,
+        >>::from(s.draw()))
+    }),
+    Call::new("spherule_kernel::shape::Shape::as_sphere", |s| {
+        seen(spherule_kernel::shape::Shape::as_sphere(&s.draw()))
+    }),
+    Call::new("spherule_kernel::shape::Shape::bounds", |s| {
+        seen(spherule_kernel::shape::Shape::bounds(&s.draw()))
+    }),
+    Call::new("spherule_kernel::shape::Shape::contains", |s| {
+        seen(spherule_kernel::shape::Shape::contains(&s.draw(), s.draw()))
+    }),
+    Call::new("spherule_kernel::shape::Shape::hull", |s| {
+        seen(spherule_kernel::shape::Shape::hull(&s.draw()))
+    }),
+    Call::new("spherule_kernel::shape::Shape::is_valid", |s| {
+        seen(spherule_kernel::shape::Shape::is_valid(&s.draw()))
+    }),
+    Call::new("spherule_kernel::shape::Shape::kinds", |s| {
+        seen(spherule_kernel::shape::Shape::kinds(&s.draw()))
+    }),
+    Call::new("spherule_kernel::shape::Shape::moved", |s| {
+        seen(spherule_kernel::shape::Shape::moved(
+            &s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::shape::Shape::name", |s| {
+        seen(spherule_kernel::shape::Shape::name(&s.draw()))
+    }),
+    Call::new("spherule_kernel::shape::Shape::span", |s| {
+        seen(spherule_kernel::shape::Shape::span(
+            &s.draw(),
+            s.draw(),
+            s.draw(),
+            &s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::shape::Shape::surface", |s| {
+        seen(spherule_kernel::shape::Shape::surface(
+            &s.draw(),
+            s.draw(),
+            &s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::shape::Shape::thickness", |s| {
+        seen(spherule_kernel::shape::Shape::thickness(
+            &s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::shape::among::Shapes::are_hit", |s| {
+        seen(spherule_kernel::shape::among::Shapes::are_hit(
+            &s.draw::<odd::OddShapes>().get(),
+            s.draw(),
+            &s.draw(),
+            s.draw(),
+            spherule_kernel::shape::among::Resting,
+        ))
+    }),
+    Call::new("spherule_kernel::shape::among::Shapes::have", |s| {
+        seen(spherule_kernel::shape::among::Shapes::have(
+            &s.draw::<odd::OddShapes>().get(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::shape::among::Shapes::nearest_hit", |s| {
+        seen(spherule_kernel::shape::among::Shapes::nearest_hit(
+            &s.draw::<odd::OddShapes>().get(),
+            s.draw(),
+            &s.draw(),
+            s.draw(),
+            s.draw(),
+            spherule_kernel::shape::among::Resting,
+        ))
+    }),
+    Call::new("spherule_kernel::shape::among::Shapes::shape", |s| {
+        seen(spherule_kernel::shape::among::Shapes::shape(
+            &s.draw::<odd::OddShapes>().get(),
+            s.draw(),
+            spherule_kernel::shape::among::Resting,
+        ))
+    }),
+    Call::new("spherule_kernel::shape::among::Shapes::size", |s| {
+        seen(spherule_kernel::shape::among::Shapes::size(
+            &s.draw::<odd::OddShapes>().get(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::shape::among::Shapes::surface", |s| {
+        seen(spherule_kernel::shape::among::Shapes::surface(
+            &s.draw::<odd::OddShapes>().get(),
+            &s.draw(),
+            s.draw(),
+            s.draw(),
+            spherule_kernel::shape::among::Resting,
+        ))
+    }),
+    Call::new(
+        "spherule_kernel::shape::capsule::Capsule as spherule::accuracy::shape_oracle::Exact::exact_span",
+        |s| {
+            seen(<spherule_kernel::shape::capsule::Capsule as spherule::accuracy::shape_oracle::Exact>::exact_span(&s.draw(), &s.draw()))
+        },
+    ),
+    Call::new(
+        "spherule_kernel::shape::capsule::Capsule as spherule_kernel::shape::Measures::as_sphere",
+        |s| {
+            seen(<spherule_kernel::shape::capsule::Capsule as spherule_kernel::shape::Measures>::as_sphere(&s.draw()))
+        },
+    ),
+    Call::new(
+        "spherule_kernel::shape::capsule::Capsule as spherule_kernel::shape::Measures::bounds",
+        |s| {
+            seen(<spherule_kernel::shape::capsule::Capsule as spherule_kernel::shape::Measures>::bounds(&s.draw()))
+        },
+    ),
+    Call::new(
+        "spherule_kernel::shape::capsule::Capsule as spherule_kernel::shape::Measures::hull",
+        |s| {
+            seen(<spherule_kernel::shape::capsule::Capsule as spherule_kernel::shape::Measures>::hull(&s.draw()))
+        },
+    ),
+    Call::new(
+        "spherule_kernel::shape::capsule::Capsule as spherule_kernel::shape::Measures::is_valid",
+        |s| {
+            seen(<spherule_kernel::shape::capsule::Capsule as spherule_kernel::shape::Measures>::is_valid(&s.draw()))
+        },
+    ),
+    Call::new(
+        "spherule_kernel::shape::capsule::Capsule as spherule_kernel::shape::Solid::contains",
+        |s| {
+            seen(<spherule_kernel::shape::capsule::Capsule as spherule_kernel::shape::Solid>::contains(&s.draw(), s.draw()))
+        },
+    ),
+    Call::new(
+        "spherule_kernel::shape::capsule::Capsule as spherule_kernel::shape::Solid::moved",
+        |s| {
+            seen(
+                <spherule_kernel::shape::capsule::Capsule as spherule_kernel::shape::Solid>::moved(
+                    &s.draw(),
+                    s.draw(),
+                ),
+            )
+        },
+    ),
+    Call::new(
+        "spherule_kernel::shape::capsule::Capsule as spherule_kernel::shape::Solid::span",
+        |s| {
+            seen(
+                <spherule_kernel::shape::capsule::Capsule as spherule_kernel::shape::Solid>::span(
+                    &s.draw(),
+                    s.draw(),
+                    s.draw(),
+                ),
+            )
+        },
+    ),
+    Call::new(
+        "spherule_kernel::shape::capsule::Capsule as spherule_kernel::shape::Solid::surface",
+        |s| {
+            seen(<spherule_kernel::shape::capsule::Capsule as spherule_kernel::shape::Solid>::surface(&s.draw(), &s.draw(), s.draw()))
+        },
+    ),
+    Call::new(
+        "spherule_kernel::shape::capsule::Capsule as spherule_kernel::shape::Solid::textbook_span",
+        |s| {
+            seen(<spherule_kernel::shape::capsule::Capsule as spherule_kernel::shape::Solid>::textbook_span(&s.draw(), &s.draw()))
+        },
+    ),
+    Call::new(
+        "spherule_kernel::shape::capsule::Capsule as spherule_kernel::shape::Solid::thickness",
+        |s| {
+            seen(<spherule_kernel::shape::capsule::Capsule as spherule_kernel::shape::Solid>::thickness(&s.draw()))
+        },
+    ),
+    Call::new("spherule_kernel::shape::capsule::Capsule::intersect", |s| {
+        seen(spherule_kernel::shape::capsule::Capsule::intersect(
+            &s.draw(),
+            s.draw(),
+            &s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::shape::capsule::Capsule::new", |s| {
+        seen(spherule_kernel::shape::capsule::Capsule::new(
+            s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new(
+        "spherule_kernel::shape::cone::Cone as spherule::accuracy::shape_oracle::Exact::exact_span",
+        |s| {
+            seen(<spherule_kernel::shape::cone::Cone as spherule::accuracy::shape_oracle::Exact>::exact_span(&s.draw(), &s.draw()))
+        },
+    ),
+    Call::new(
+        "spherule_kernel::shape::cone::Cone as spherule_kernel::shape::Measures::bounds",
+        |s| {
+            seen(
+                <spherule_kernel::shape::cone::Cone as spherule_kernel::shape::Measures>::bounds(
+                    &s.draw(),
+                ),
+            )
+        },
+    ),
+    Call::new(
+        "spherule_kernel::shape::cone::Cone as spherule_kernel::shape::Measures::hull",
+        |s| {
+            seen(
+                <spherule_kernel::shape::cone::Cone as spherule_kernel::shape::Measures>::hull(
+                    &s.draw(),
+                ),
+            )
+        },
+    ),
+    Call::new(
+        "spherule_kernel::shape::cone::Cone as spherule_kernel::shape::Measures::is_valid",
+        |s| {
+            seen(
+                <spherule_kernel::shape::cone::Cone as spherule_kernel::shape::Measures>::is_valid(
+                    &s.draw(),
+                ),
+            )
+        },
+    ),
+    Call::new(
+        "spherule_kernel::shape::cone::Cone as spherule_kernel::shape::Solid::contains",
+        |s| {
+            seen(
+                <spherule_kernel::shape::cone::Cone as spherule_kernel::shape::Solid>::contains(
+                    &s.draw(),
+                    s.draw(),
+                ),
+            )
+        },
+    ),
+    Call::new(
+        "spherule_kernel::shape::cone::Cone as spherule_kernel::shape::Solid::moved",
+        |s| {
+            seen(
+                <spherule_kernel::shape::cone::Cone as spherule_kernel::shape::Solid>::moved(
+                    &s.draw(),
+                    s.draw(),
+                ),
+            )
+        },
+    ),
+    Call::new(
+        "spherule_kernel::shape::cone::Cone as spherule_kernel::shape::Solid::span",
+        |s| {
+            seen(
+                <spherule_kernel::shape::cone::Cone as spherule_kernel::shape::Solid>::span(
+                    &s.draw(),
+                    s.draw(),
+                    s.draw(),
+                ),
+            )
+        },
+    ),
+    Call::new(
+        "spherule_kernel::shape::cone::Cone as spherule_kernel::shape::Solid::surface",
+        |s| {
+            seen(
+                <spherule_kernel::shape::cone::Cone as spherule_kernel::shape::Solid>::surface(
+                    &s.draw(),
+                    &s.draw(),
+                    s.draw(),
+                ),
+            )
+        },
+    ),
+    Call::new(
+        "spherule_kernel::shape::cone::Cone as spherule_kernel::shape::Solid::textbook_span",
+        |s| {
+            seen(<spherule_kernel::shape::cone::Cone as spherule_kernel::shape::Solid>::textbook_span(&s.draw(), &s.draw()))
+        },
+    ),
+    Call::new(
+        "spherule_kernel::shape::cone::Cone as spherule_kernel::shape::Solid::thickness",
+        |s| {
+            seen(
+                <spherule_kernel::shape::cone::Cone as spherule_kernel::shape::Solid>::thickness(
+                    &s.draw(),
+                ),
+            )
+        },
+    ),
+    Call::new("spherule_kernel::shape::cone::Cone::intersect", |s| {
+        seen(spherule_kernel::shape::cone::Cone::intersect(
+            &s.draw(),
+            s.draw(),
+            &s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::shape::cone::Cone::new", |s| {
+        seen(spherule_kernel::shape::cone::Cone::new(
+            s.draw(),
+            s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new(
+        "spherule_kernel::shape::cuboid::Cuboid as spherule::accuracy::shape_oracle::Exact::exact_span",
+        |s| {
+            seen(<spherule_kernel::shape::cuboid::Cuboid as spherule::accuracy::shape_oracle::Exact>::exact_span(&s.draw(), &s.draw()))
+        },
+    ),
+    Call::new(
+        "spherule_kernel::shape::cuboid::Cuboid as spherule_kernel::shape::Measures::bounds",
+        |s| {
+            seen(<spherule_kernel::shape::cuboid::Cuboid as spherule_kernel::shape::Measures>::bounds(&s.draw()))
+        },
+    ),
+    Call::new(
+        "spherule_kernel::shape::cuboid::Cuboid as spherule_kernel::shape::Measures::hull",
+        |s| {
+            seen(
+                <spherule_kernel::shape::cuboid::Cuboid as spherule_kernel::shape::Measures>::hull(
+                    &s.draw(),
+                ),
+            )
+        },
+    ),
+    Call::new(
+        "spherule_kernel::shape::cuboid::Cuboid as spherule_kernel::shape::Measures::is_valid",
+        |s| {
+            seen(<spherule_kernel::shape::cuboid::Cuboid as spherule_kernel::shape::Measures>::is_valid(&s.draw()))
+        },
+    ),
+    Call::new(
+        "spherule_kernel::shape::cuboid::Cuboid as spherule_kernel::shape::Solid::contains",
+        |s| {
+            seen(
+                <spherule_kernel::shape::cuboid::Cuboid as spherule_kernel::shape::Solid>::contains(
+                    &s.draw(),
+                    s.draw(),
+                ),
+            )
+        },
+    ),
+    Call::new(
+        "spherule_kernel::shape::cuboid::Cuboid as spherule_kernel::shape::Solid::moved",
+        |s| {
+            seen(
+                <spherule_kernel::shape::cuboid::Cuboid as spherule_kernel::shape::Solid>::moved(
+                    &s.draw(),
+                    s.draw(),
+                ),
+            )
+        },
+    ),
+    Call::new(
+        "spherule_kernel::shape::cuboid::Cuboid as spherule_kernel::shape::Solid::span",
+        |s| {
+            seen(
+                <spherule_kernel::shape::cuboid::Cuboid as spherule_kernel::shape::Solid>::span(
+                    &s.draw(),
+                    s.draw(),
+                    s.draw(),
+                ),
+            )
+        },
+    ),
+    Call::new(
+        "spherule_kernel::shape::cuboid::Cuboid as spherule_kernel::shape::Solid::surface",
+        |s| {
+            seen(
+                <spherule_kernel::shape::cuboid::Cuboid as spherule_kernel::shape::Solid>::surface(
+                    &s.draw(),
+                    &s.draw(),
+                    s.draw(),
+                ),
+            )
+        },
+    ),
+    Call::new(
+        "spherule_kernel::shape::cuboid::Cuboid as spherule_kernel::shape::Solid::textbook_span",
+        |s| {
+            seen(<spherule_kernel::shape::cuboid::Cuboid as spherule_kernel::shape::Solid>::textbook_span(&s.draw(), &s.draw()))
+        },
+    ),
+    Call::new(
+        "spherule_kernel::shape::cuboid::Cuboid as spherule_kernel::shape::Solid::thickness",
+        |s| {
+            seen(<spherule_kernel::shape::cuboid::Cuboid as spherule_kernel::shape::Solid>::thickness(&s.draw()))
+        },
+    ),
+    Call::new("spherule_kernel::shape::cuboid::Cuboid::intersect", |s| {
+        seen(spherule_kernel::shape::cuboid::Cuboid::intersect(
+            &s.draw(),
+            s.draw(),
+            &s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::shape::cuboid::Cuboid::new", |s| {
+        seen(spherule_kernel::shape::cuboid::Cuboid::new(
+            s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new(
+        "spherule_kernel::shape::cylinder::Cylinder as spherule::accuracy::shape_oracle::Exact::exact_span",
+        |s| {
+            seen(<spherule_kernel::shape::cylinder::Cylinder as spherule::accuracy::shape_oracle::Exact>::exact_span(&s.draw(), &s.draw()))
+        },
+    ),
+    Call::new(
+        "spherule_kernel::shape::cylinder::Cylinder as spherule_kernel::shape::Measures::bounds",
+        |s| {
+            seen(<spherule_kernel::shape::cylinder::Cylinder as spherule_kernel::shape::Measures>::bounds(&s.draw()))
+        },
+    ),
+    Call::new(
+        "spherule_kernel::shape::cylinder::Cylinder as spherule_kernel::shape::Measures::hull",
+        |s| {
+            seen(<spherule_kernel::shape::cylinder::Cylinder as spherule_kernel::shape::Measures>::hull(&s.draw()))
+        },
+    ),
+    Call::new(
+        "spherule_kernel::shape::cylinder::Cylinder as spherule_kernel::shape::Measures::is_valid",
+        |s| {
+            seen(<spherule_kernel::shape::cylinder::Cylinder as spherule_kernel::shape::Measures>::is_valid(&s.draw()))
+        },
+    ),
+    Call::new(
+        "spherule_kernel::shape::cylinder::Cylinder as spherule_kernel::shape::Solid::contains",
+        |s| {
+            seen(<spherule_kernel::shape::cylinder::Cylinder as spherule_kernel::shape::Solid>::contains(&s.draw(), s.draw()))
+        },
+    ),
+    Call::new(
+        "spherule_kernel::shape::cylinder::Cylinder as spherule_kernel::shape::Solid::moved",
+        |s| {
+            seen(<spherule_kernel::shape::cylinder::Cylinder as spherule_kernel::shape::Solid>::moved(&s.draw(), s.draw()))
+        },
+    ),
+    Call::new(
+        "spherule_kernel::shape::cylinder::Cylinder as spherule_kernel::shape::Solid::span",
+        |s| {
+            seen(
+                <spherule_kernel::shape::cylinder::Cylinder as spherule_kernel::shape::Solid>::span(
+                    &s.draw(),
+                    s.draw(),
+                    s.draw(),
+                ),
+            )
+        },
+    ),
+    Call::new(
+        "spherule_kernel::shape::cylinder::Cylinder as spherule_kernel::shape::Solid::surface",
+        |s| {
+            seen(<spherule_kernel::shape::cylinder::Cylinder as spherule_kernel::shape::Solid>::surface(&s.draw(), &s.draw(), s.draw()))
+        },
+    ),
+    Call::new(
+        "spherule_kernel::shape::cylinder::Cylinder as spherule_kernel::shape::Solid::textbook_span",
+        |s| {
+            seen(<spherule_kernel::shape::cylinder::Cylinder as spherule_kernel::shape::Solid>::textbook_span(&s.draw(), &s.draw()))
+        },
+    ),
+    Call::new(
+        "spherule_kernel::shape::cylinder::Cylinder as spherule_kernel::shape::Solid::thickness",
+        |s| {
+            seen(<spherule_kernel::shape::cylinder::Cylinder as spherule_kernel::shape::Solid>::thickness(&s.draw()))
+        },
+    ),
+    Call::new(
+        "spherule_kernel::shape::cylinder::Cylinder::intersect",
+        |s| {
+            seen(spherule_kernel::shape::cylinder::Cylinder::intersect(
+                &s.draw(),
+                s.draw(),
+                &s.draw(),
+            ))
+        },
+    ),
+    Call::new("spherule_kernel::shape::cylinder::Cylinder::new", |s| {
+        seen(spherule_kernel::shape::cylinder::Cylinder::new(
+            s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new(
+        "spherule_kernel::shape::disc::Disc as spherule::accuracy::shape_oracle::Exact::exact_span",
+        |s| {
+            seen(<spherule_kernel::shape::disc::Disc as spherule::accuracy::shape_oracle::Exact>::exact_span(&s.draw(), &s.draw()))
+        },
+    ),
+    Call::new(
+        "spherule_kernel::shape::disc::Disc as spherule_kernel::shape::Measures::bounds",
+        |s| {
+            seen(
+                <spherule_kernel::shape::disc::Disc as spherule_kernel::shape::Measures>::bounds(
+                    &s.draw(),
+                ),
+            )
+        },
+    ),
+    Call::new(
+        "spherule_kernel::shape::disc::Disc as spherule_kernel::shape::Measures::hull",
+        |s| {
+            seen(
+                <spherule_kernel::shape::disc::Disc as spherule_kernel::shape::Measures>::hull(
+                    &s.draw(),
+                ),
+            )
+        },
+    ),
+    Call::new(
+        "spherule_kernel::shape::disc::Disc as spherule_kernel::shape::Measures::is_valid",
+        |s| {
+            seen(
+                <spherule_kernel::shape::disc::Disc as spherule_kernel::shape::Measures>::is_valid(
+                    &s.draw(),
+                ),
+            )
+        },
+    ),
+    Call::new(
+        "spherule_kernel::shape::disc::Disc as spherule_kernel::shape::Solid::contains",
+        |s| {
+            seen(
+                <spherule_kernel::shape::disc::Disc as spherule_kernel::shape::Solid>::contains(
+                    &s.draw(),
+                    s.draw(),
+                ),
+            )
+        },
+    ),
+    Call::new(
+        "spherule_kernel::shape::disc::Disc as spherule_kernel::shape::Solid::moved",
+        |s| {
+            seen(
+                <spherule_kernel::shape::disc::Disc as spherule_kernel::shape::Solid>::moved(
+                    &s.draw(),
+                    s.draw(),
+                ),
+            )
+        },
+    ),
+    Call::new(
+        "spherule_kernel::shape::disc::Disc as spherule_kernel::shape::Solid::span",
+        |s| {
+            seen(
+                <spherule_kernel::shape::disc::Disc as spherule_kernel::shape::Solid>::span(
+                    &s.draw(),
+                    s.draw(),
+                    s.draw(),
+                ),
+            )
+        },
+    ),
+    Call::new(
+        "spherule_kernel::shape::disc::Disc as spherule_kernel::shape::Solid::surface",
+        |s| {
+            seen(
+                <spherule_kernel::shape::disc::Disc as spherule_kernel::shape::Solid>::surface(
+                    &s.draw(),
+                    &s.draw(),
+                    s.draw(),
+                ),
+            )
+        },
+    ),
+    Call::new(
+        "spherule_kernel::shape::disc::Disc as spherule_kernel::shape::Solid::textbook_span",
+        |s| {
+            seen(<spherule_kernel::shape::disc::Disc as spherule_kernel::shape::Solid>::textbook_span(&s.draw(), &s.draw()))
+        },
+    ),
+    Call::new(
+        "spherule_kernel::shape::disc::Disc as spherule_kernel::shape::Solid::thickness",
+        |s| {
+            seen(
+                <spherule_kernel::shape::disc::Disc as spherule_kernel::shape::Solid>::thickness(
+                    &s.draw(),
+                ),
+            )
+        },
+    ),
+    Call::new("spherule_kernel::shape::disc::Disc::intersect", |s| {
+        seen(spherule_kernel::shape::disc::Disc::intersect(
+            &s.draw(),
+            s.draw(),
+            &s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::shape::disc::Disc::new", |s| {
+        seen(spherule_kernel::shape::disc::Disc::new(
+            s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new(
+        "spherule_kernel::shape::ellipsoid::Ellipsoid as spherule::accuracy::shape_oracle::Exact::exact_span",
+        |s| {
+            seen(<spherule_kernel::shape::ellipsoid::Ellipsoid as spherule::accuracy::shape_oracle::Exact>::exact_span(&s.draw(), &s.draw()))
+        },
+    ),
+    Call::new(
+        "spherule_kernel::shape::ellipsoid::Ellipsoid as spherule_kernel::shape::Measures::as_sphere",
+        |s| {
+            seen(<spherule_kernel::shape::ellipsoid::Ellipsoid as spherule_kernel::shape::Measures>::as_sphere(&s.draw()))
+        },
+    ),
+    Call::new(
+        "spherule_kernel::shape::ellipsoid::Ellipsoid as spherule_kernel::shape::Measures::bounds",
+        |s| {
+            seen(<spherule_kernel::shape::ellipsoid::Ellipsoid as spherule_kernel::shape::Measures>::bounds(&s.draw()))
+        },
+    ),
+    Call::new(
+        "spherule_kernel::shape::ellipsoid::Ellipsoid as spherule_kernel::shape::Measures::hull",
+        |s| {
+            seen(<spherule_kernel::shape::ellipsoid::Ellipsoid as spherule_kernel::shape::Measures>::hull(&s.draw()))
+        },
+    ),
+    Call::new(
+        "spherule_kernel::shape::ellipsoid::Ellipsoid as spherule_kernel::shape::Measures::is_valid",
+        |s| {
+            seen(<spherule_kernel::shape::ellipsoid::Ellipsoid as spherule_kernel::shape::Measures>::is_valid(&s.draw()))
+        },
+    ),
+    Call::new(
+        "spherule_kernel::shape::ellipsoid::Ellipsoid as spherule_kernel::shape::Solid::contains",
+        |s| {
+            seen(<spherule_kernel::shape::ellipsoid::Ellipsoid as spherule_kernel::shape::Solid>::contains(&s.draw(), s.draw()))
+        },
+    ),
+    Call::new(
+        "spherule_kernel::shape::ellipsoid::Ellipsoid as spherule_kernel::shape::Solid::moved",
+        |s| {
+            seen(<spherule_kernel::shape::ellipsoid::Ellipsoid as spherule_kernel::shape::Solid>::moved(&s.draw(), s.draw()))
+        },
+    ),
+    Call::new(
+        "spherule_kernel::shape::ellipsoid::Ellipsoid as spherule_kernel::shape::Solid::span",
+        |s| {
+            seen(<spherule_kernel::shape::ellipsoid::Ellipsoid as spherule_kernel::shape::Solid>::span(&s.draw(), s.draw(), s.draw()))
+        },
+    ),
+    Call::new(
+        "spherule_kernel::shape::ellipsoid::Ellipsoid as spherule_kernel::shape::Solid::surface",
+        |s| {
+            seen(<spherule_kernel::shape::ellipsoid::Ellipsoid as spherule_kernel::shape::Solid>::surface(&s.draw(), &s.draw(), s.draw()))
+        },
+    ),
+    Call::new(
+        "spherule_kernel::shape::ellipsoid::Ellipsoid as spherule_kernel::shape::Solid::textbook_span",
+        |s| {
+            seen(<spherule_kernel::shape::ellipsoid::Ellipsoid as spherule_kernel::shape::Solid>::textbook_span(&s.draw(), &s.draw()))
+        },
+    ),
+    Call::new(
+        "spherule_kernel::shape::ellipsoid::Ellipsoid as spherule_kernel::shape::Solid::thickness",
+        |s| {
+            seen(<spherule_kernel::shape::ellipsoid::Ellipsoid as spherule_kernel::shape::Solid>::thickness(&s.draw()))
+        },
+    ),
+    Call::new(
+        "spherule_kernel::shape::ellipsoid::Ellipsoid::intersect",
+        |s| {
+            seen(spherule_kernel::shape::ellipsoid::Ellipsoid::intersect(
+                &s.draw(),
+                s.draw(),
+                &s.draw(),
+            ))
+        },
+    ),
+    Call::new("spherule_kernel::shape::ellipsoid::Ellipsoid::new", |s| {
+        seen(spherule_kernel::shape::ellipsoid::Ellipsoid::new(
+            s.draw(),
+            s.draw(),
+            s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::shape::span::Span::exit", |s| {
+        seen(spherule_kernel::shape::span::Span::<f32>::exit(
+            &s.draw(),
+            &s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::shape::span::Span::first", |s| {
+        seen(spherule_kernel::shape::span::Span::<f32>::first(
+            &s.draw(),
+            &s.draw(),
+        ))
+    }),
+    Call::new("spherule_kernel::shape::span::Span::none", |s| {
+        seen(spherule_kernel::shape::span::Span::<f32>::none(s.draw()))
+    }),
     Call::new("spherule_kernel::sphere::Sphere::center", |s| {
         seen(spherule_kernel::sphere::Sphere::center(&s.draw()))
     }),
@@ -3264,6 +4107,18 @@ pub const CALLS: &[Call] = &[
         seen(spherule_kernel::surface::unit(s.draw()))
     }),
 ];
+
+impl Odd for spherule::accel::shapes::ShapeTree {
+    fn odd(s: &mut Source) -> Self {
+        spherule::accel::shapes::ShapeTree {
+            kinds: Odd::odd(s),
+            shapes: Odd::odd(s),
+            material_ids: Odd::odd(s),
+            velocities: Odd::odd(s),
+            nodes: Odd::odd(s),
+        }
+    }
+}
 
 impl Odd for spherule::accel::tree::Acceleration {
     fn odd(s: &mut Source) -> Self {
@@ -3394,6 +4249,32 @@ impl Odd for spherule::accuracy::samples::Step {
             error: Odd::odd(s),
             estimate: Odd::odd(s),
             flip: Odd::odd(s),
+        }
+    }
+}
+
+impl Odd for spherule::accuracy::shape_families::Family {
+    fn odd(s: &mut Source) -> Self {
+        match s.below(6) {
+            0 => spherule::accuracy::shape_families::Family::Generic,
+            1 => spherule::accuracy::shape_families::Family::Far,
+            2 => spherule::accuracy::shape_families::Family::Along,
+            3 => spherule::accuracy::shape_families::Family::Thin,
+            4 => spherule::accuracy::shape_families::Family::Grazing,
+            _ => spherule::accuracy::shape_families::Family::Inside,
+        }
+    }
+}
+
+impl Odd for spherule::accuracy::shape_families::Known {
+    fn odd(s: &mut Source) -> Self {
+        match s.below(6) {
+            0 => spherule::accuracy::shape_families::Known::Capsule(Odd::odd(s)),
+            1 => spherule::accuracy::shape_families::Known::Cylinder(Odd::odd(s)),
+            2 => spherule::accuracy::shape_families::Known::Ellipsoid(Odd::odd(s)),
+            3 => spherule::accuracy::shape_families::Known::Box(Odd::odd(s)),
+            4 => spherule::accuracy::shape_families::Known::Cone(Odd::odd(s)),
+            _ => spherule::accuracy::shape_families::Known::Disc(Odd::odd(s)),
         }
     }
 }
@@ -3905,6 +4786,7 @@ impl Odd for spherule_kernel::film::PathLaunch {
             filter: Odd::odd(s),
             indirect_limit: Odd::odd(s),
             first_caster: Odd::odd(s),
+            first_shape: Odd::odd(s),
             padding: Odd::odd(s),
         }
     }
@@ -4168,6 +5050,74 @@ impl Odd for spherule_kernel::shading::Shading {
             2 => spherule_kernel::shading::Shading::Depth,
             3 => spherule_kernel::shading::Shading::Flat,
             _ => spherule_kernel::shading::Shading::Id,
+        }
+    }
+}
+
+impl Odd for spherule_kernel::shape::capsule::Capsule {
+    fn odd(s: &mut Source) -> Self {
+        spherule_kernel::shape::capsule::Capsule {
+            start: Odd::odd(s),
+            radius: Odd::odd(s),
+            end: Odd::odd(s),
+            unused: Odd::odd(s),
+        }
+    }
+}
+
+impl Odd for spherule_kernel::shape::cone::Cone {
+    fn odd(s: &mut Source) -> Self {
+        spherule_kernel::shape::cone::Cone {
+            start: Odd::odd(s),
+            start_radius: Odd::odd(s),
+            end: Odd::odd(s),
+            end_radius: Odd::odd(s),
+        }
+    }
+}
+
+impl Odd for spherule_kernel::shape::cuboid::Cuboid {
+    fn odd(s: &mut Source) -> Self {
+        spherule_kernel::shape::cuboid::Cuboid {
+            center: Odd::odd(s),
+            unused: Odd::odd(s),
+            half_axes: Odd::odd(s),
+            unused_too: Odd::odd(s),
+            rotation: Odd::odd(s),
+        }
+    }
+}
+
+impl Odd for spherule_kernel::shape::cylinder::Cylinder {
+    fn odd(s: &mut Source) -> Self {
+        spherule_kernel::shape::cylinder::Cylinder {
+            start: Odd::odd(s),
+            radius: Odd::odd(s),
+            end: Odd::odd(s),
+            unused: Odd::odd(s),
+        }
+    }
+}
+
+impl Odd for spherule_kernel::shape::disc::Disc {
+    fn odd(s: &mut Source) -> Self {
+        spherule_kernel::shape::disc::Disc {
+            center: Odd::odd(s),
+            radius: Odd::odd(s),
+            normal: Odd::odd(s),
+            unused: Odd::odd(s),
+        }
+    }
+}
+
+impl Odd for spherule_kernel::shape::ellipsoid::Ellipsoid {
+    fn odd(s: &mut Source) -> Self {
+        spherule_kernel::shape::ellipsoid::Ellipsoid {
+            center: Odd::odd(s),
+            unused: Odd::odd(s),
+            half_axes: Odd::odd(s),
+            unused_too: Odd::odd(s),
+            rotation: Odd::odd(s),
         }
     }
 }

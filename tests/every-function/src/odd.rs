@@ -26,13 +26,17 @@ use spherule::kernel::accel::traversal::OneByOne;
 use spherule::kernel::cull::cone::{Cone, Sight};
 use spherule::kernel::cull::frustum::{Frustum, Plane};
 use spherule::kernel::filter::Filter;
-use spherule::kernel::glam::{DVec3, UVec2, UVec3, UVec4, Vec2, Vec3, Vec4};
+use spherule::kernel::glam::{DVec3, Quat, UVec2, UVec3, UVec4, Vec2, Vec3, Vec4};
 use spherule::kernel::material::microfacet::{Albedo, RoughMetal};
 use spherule::kernel::material::plastic::Plastic;
 use spherule::kernel::path::caustic::ball::Ball;
 use spherule::kernel::path::caustic::ways::Ways;
 use spherule::kernel::path::random::{Sampler, VertexNumbers};
 use spherule::kernel::path::{Path, Scenery, start};
+use spherule::kernel::shape;
+use spherule::kernel::shape::{
+    Capsule, Cuboid, Cylinder, Disc, Ellipsoid, Kinds, Shape, Shapes, Span,
+};
 use spherule::kernel::{
     Accumulator, Camera, Effects, Launch, Light, Material, PathLaunch, Pixel, Rung, Shading, Sphere,
 };
@@ -552,6 +556,12 @@ impl Odd for Vec4 {
     }
 }
 
+impl Odd for Quat {
+    fn odd(s: &mut Source) -> Self {
+        Self::from_vec4(Odd::odd(s))
+    }
+}
+
 impl Odd for UVec2 {
     fn odd(s: &mut Source) -> Self {
         Self::new(Odd::odd(s), Odd::odd(s))
@@ -708,6 +718,83 @@ impl Odd for Sphere {
     }
 }
 
+impl Odd for Span<f32> {
+    fn odd(s: &mut Source) -> Self {
+        Self {
+            near: Odd::odd(s),
+            far: Odd::odd(s),
+            meets: Odd::odd(s),
+        }
+    }
+}
+
+impl Odd for Kinds {
+    fn odd(s: &mut Source) -> Self {
+        if s.one_in(4) {
+            Self::ALL
+        } else {
+            Self::from_bits(s.bits() as u32)
+        }
+    }
+}
+
+impl Odd for Shape {
+    fn odd(s: &mut Source) -> Self {
+        let (start, end): (Vec3, Vec3) = (Odd::odd(s), Odd::odd(s));
+        let mut length = || if s.is_odd() { Odd::odd(s) } else { s.unit() };
+        let half = Vec3::new(length(), length(), length());
+        let rotation = Odd::odd(s);
+        match s.below(7) {
+            0 => Capsule::new(start, end, half.x).into(),
+            1 => Cylinder::new(start, end, half.x).into(),
+            2 => shape::Cone::new(start, end, half.x, half.y).into(),
+            3 => Ellipsoid::new(start, half, rotation).into(),
+            4 => Cuboid::new(start, half, rotation).into(),
+            5 => Disc::new(start, end, half.x).into(),
+            _ => {
+                let rows: [Vec4; 3] = Odd::odd(s);
+                bytemuck::cast(rows)
+            }
+        }
+    }
+}
+
+/// Owns what [`Shapes`] borrow.
+#[derive(Debug)]
+pub struct OddShapes {
+    kinds: Kinds,
+    shapes: Vec<Shape>,
+    tree: OddTree,
+    first: u32,
+}
+
+impl Odd for OddShapes {
+    fn odd(s: &mut Source) -> Self {
+        Self {
+            kinds: Odd::odd(s),
+            shapes: Odd::odd(s),
+            tree: Odd::odd(s),
+            first: if s.is_odd() {
+                Odd::odd(s)
+            } else {
+                s.below(9) as u32
+            },
+        }
+    }
+}
+
+impl OddShapes {
+    /// The shapes.
+    pub fn get(&self) -> Shapes<'_> {
+        Shapes {
+            kinds: self.kinds,
+            shapes: &self.shapes,
+            tree: self.tree.get(),
+            first: self.first,
+        }
+    }
+}
+
 impl Odd for Material {
     fn odd(s: &mut Source) -> Self {
         let color = Vec3::new(s.unit(), s.unit(), s.unit());
@@ -824,6 +911,7 @@ pub struct OddScenery {
     rung: u32,
     launch: PathLaunch,
     traversal: OddOneByOne,
+    shapes: OddShapes,
     spheres: Vec<Sphere>,
     velocities: Vec<Vec4>,
     material_ids: Vec<u32>,
@@ -845,6 +933,7 @@ impl Odd for OddScenery {
             rung: Odd::odd(s),
             launch,
             traversal: Odd::odd(s),
+            shapes: Odd::odd(s),
             spheres: Odd::odd(s),
             velocities: Odd::odd(s),
             material_ids: Odd::odd(s),
@@ -864,6 +953,7 @@ impl OddScenery {
             rung: self.rung,
             launch: &self.launch,
             traversal: self.traversal.get(),
+            shapes: self.shapes.get(),
             spheres: &self.spheres,
             velocities: &self.velocities,
             material_ids: &self.material_ids,
@@ -920,8 +1010,16 @@ impl Odd for World {
             }
         };
         let mut material_ids: Vec<u32> = spheres.iter().map(|_| id(s)).collect();
+        let shapes: Vec<Shape> = if s.one_in(2) { Odd::odd(s) } else { Vec::new() };
+        let mut shape_material_ids: Vec<u32> = shapes.iter().map(|_| id(s)).collect();
+        let mut shape_velocities: Vec<Vec3> = Vec::new();
+        if s.one_in(3) {
+            shape_velocities = shapes.iter().map(|_| Odd::odd(s)).collect();
+        }
         if s.is_odd() {
-            match s.below(4) {
+            match s.below(6) {
+                4 => shape_velocities = Odd::odd(s),
+                5 => shape_material_ids = Odd::odd(s),
                 0 => velocities = Odd::odd(s),
                 1 => {
                     material_ids.pop();
@@ -941,6 +1039,9 @@ impl Odd for World {
             materials,
             material_names,
             velocities,
+            shapes,
+            shape_material_ids,
+            shape_velocities,
         }
     }
 }

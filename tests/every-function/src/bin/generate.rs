@@ -19,6 +19,18 @@ use rustdoc_types::{
 /// Functions that are not called, and the reason.
 const LEFT_OUT: &[(&str, &str)] = &[
     (
+        "spherule_kernel::shape::among::Motion",
+        "moves shapes for Shapes, whose functions are called",
+    ),
+    (
+        "spherule_kernel::shape::span::Span::narrowed",
+        "is of the type with 64-bit floats alone; Shape::span calls it",
+    ),
+    (
+        "spherule_kernel::accel::primitives::Primitives",
+        "for all spheres at once: its methods are called by the walks, which are called with these",
+    ),
+    (
         "spherule::cli::run",
         "is a whole command: tests/command_line_as_a_function.rs",
     ),
@@ -181,6 +193,16 @@ const WRITTEN: &[(&str, &[&str])] = &[
 /// Expressions for arguments, by function and argument name.
 const ARGUMENTS: &[(&str, &str, &str)] = &[
     (
+        "spherule::scene::world::World::add_shape",
+        "shape",
+        "s.draw::<spherule_kernel::shape::Shape>()",
+    ),
+    (
+        "spherule::scene::world::World::add_moving_shape",
+        "shape",
+        "s.draw::<spherule_kernel::shape::Shape>()",
+    ),
+    (
         "spherule::accuracy::hard_rays::export",
         "folder",
         "&s.folder()",
@@ -273,6 +295,9 @@ const BY_HAND: &[&str] = &[
     "spherule_kernel::path::light_path::Path",
     "spherule_kernel::path::caustic::ball::Ball",
     "spherule_kernel::path::caustic::ways::Ways",
+    "spherule_kernel::shape::Kinds",
+    "spherule_kernel::shape::Shape",
+    "spherule_kernel::shape::span::Span",
     "spherule_kernel::sphere::Sphere",
 ];
 
@@ -296,6 +321,7 @@ const OWNED: &[(&str, &str)] = &[
     ),
     ("spherule_kernel::accel::traversal::OneByOne", "OddOneByOne"),
     ("spherule_kernel::accel::node::Tree", "OddTree"),
+    ("spherule_kernel::shape::among::Shapes", "OddShapes"),
 ];
 
 /// Types whose values are written literally.
@@ -312,7 +338,7 @@ const GIVEN: &[(&str, &str)] = &[
 /// Types of other crates that `src/odd.rs` makes.
 const FOREIGN: &[&str] = &[
     "Box", "DVec3", "Duration", "Element", "Instant", "Option", "PathBuf", "Range", "String",
-    "UVec2", "UVec3", "UVec4", "Vec", "Vec2", "Vec3", "Vec4",
+    "Quat", "UVec2", "UVec3", "UVec4", "Vec", "Vec2", "Vec3", "Vec4",
 ];
 
 type Result<T> = std::result::Result<T, Box<dyn Error>>;
@@ -398,6 +424,12 @@ impl<'a> Generator<'a> {
                 continue;
             };
             if it.is_synthetic || it.blanket_impl.is_some() {
+                continue;
+            }
+            // Those of other types that name this one are listed, too.
+            if let Type::ResolvedPath(of) = &it.for_
+                && definition(krate, of.id) != defined
+            {
                 continue;
             }
             if it.trait_.is_none() {
@@ -588,10 +620,16 @@ impl<'a> Generator<'a> {
                     }
                     Type::Primitive(name) if name == "str" => one("&s.text()"),
                     Type::ResolvedPath(path) if path.path.ends_with("Path") => one("&s.path()"),
-                    Type::Generic(name) if bounds(generics, name).contains("Spheres") => Ok(vec![
-                        "&s.many::<spherule_kernel::Sphere>()[..]".into(),
-                        "&s.draw::<odd::OddMovingSpheres>().get()".into(),
-                    ]),
+                    Type::Generic(name)
+                        if ["Spheres", "Primitives"]
+                            .iter()
+                            .any(|known| bounds(generics, name).contains(*known)) =>
+                    {
+                        Ok(vec![
+                            "&s.many::<spherule_kernel::Sphere>()[..]".into(),
+                            "&s.draw::<odd::OddMovingSpheres>().get()".into(),
+                        ])
+                    }
                     inner => {
                         if let Some(known) = known(inner) {
                             let borrow = if known.starts_with("s.draw") { "&" } else { "" };
@@ -605,6 +643,11 @@ impl<'a> Generator<'a> {
             Type::ImplTrait(bounds) => match bounds.first() {
                 Some(GenericBound::TraitBound { trait_, .. }) if trait_.path == "AsRef" => {
                     one("s.path()")
+                }
+                Some(GenericBound::TraitBound { trait_, .. })
+                    if trait_.path.ends_with("Motion") =>
+                {
+                    one("spherule_kernel::shape::among::Resting")
                 }
                 Some(GenericBound::TraitBound { trait_, .. }) if trait_.path == "Into" => {
                     one("s.draw::<spherule::render::Settings>()")

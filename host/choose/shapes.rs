@@ -1,0 +1,56 @@
+//! What a rung's errors move in the image of a shape beside the spheres.
+//!
+//! The foot of a perpendicular is off by u a few times the distance D of the shape's farthest point
+//! from the eye: 17 for a sphere, and no more than 64 for any shape (`shape/capsule.rs`). It moves
+//! the silhouette across the ray, and t by as much over the cosine, which is left out: what it
+//! moves is where surfaces meet. Seen from the distance of the nearest point that is 64u D over
+//! that. On `textbook` the square of a radius is off by 128u D² instead.
+
+use glam::DVec3;
+use rayon::prelude::*;
+use spherule_kernel::Rung;
+use spherule_kernel::shape::Shape;
+
+use super::meeting::View;
+use crate::scene::world::GRAIN;
+
+impl View<'_> {
+    /// The largest shift, as an angle, on any one shape beside the spheres.
+    pub(super) fn largest_shift_on_a_shape(&self) -> f64 {
+        let world = &self.scene.world;
+        world
+            .shapes
+            .par_iter()
+            .enumerate()
+            .with_min_len(GRAIN)
+            .map(|(index, shape)| {
+                let velocity = world.shape_velocities.get(index);
+                let velocity = velocity.map_or(DVec3::ZERO, |velocity| velocity.as_dvec3());
+                let at = |time: f64| shift(self.rung, shape, self.eye - velocity * time);
+                self.shutter.map(at).into_iter().fold(0.0, f64::max)
+            })
+            .reduce(|| 0.0, f64::max)
+    }
+}
+
+/// The largest shift, as an angle, on one shape, seen from `eye`.
+fn shift(rung: Rung, shape: &Shape, eye: DVec3) -> f64 {
+    let (low, high) = shape.bounds();
+    let (low, high) = (low.as_dvec3() - eye, high.as_dvec3() - eye);
+    let farthest = low.abs().max(high.abs()).length();
+    // The box's nearest point, which is not farther away than the shape's; from inside of the box,
+    // half of the thickness stands for it.
+    let outside = low.max(-high).max(DVec3::ZERO).length();
+    let thickness = f64::from(shape.thickness(shape.kinds()));
+    let nearest = outside.max(thickness);
+    let (single, double) = (f64::from(f32::EPSILON) / 2.0, f64::EPSILON / 2.0);
+    let of_foot = |u: f64| 64.0 * u * farthest / nearest;
+    match rung {
+        Rung::Textbook => {
+            let of_square = 128.0 * single * farthest * farthest / thickness;
+            of_foot(single) + of_square / nearest
+        }
+        Rung::Robust => of_foot(single),
+        Rung::Compensated | Rung::Double | Rung::Certified => of_foot(double) + single,
+    }
+}
