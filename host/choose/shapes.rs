@@ -14,6 +14,9 @@ use spherule_kernel::shape::Shape;
 use super::meeting::View;
 use crate::scene::world::GRAIN;
 
+/// The square of this length, times 2⁻⁴⁶, still is a normal 32-bit float.
+const SMALLEST: f64 = 1e-11;
+
 impl View<'_> {
     /// The largest shift, as an angle, on any one shape beside the spheres.
     pub(super) fn largest_shift_on_a_shape(&self) -> f64 {
@@ -45,12 +48,54 @@ fn shift(rung: Rung, shape: &Shape, eye: DVec3) -> f64 {
     let nearest = outside.max(thickness);
     let (single, double) = (f64::from(f32::EPSILON) / 2.0, f64::EPSILON / 2.0);
     let of_foot = |u: f64| 64.0 * u * farthest / nearest;
+    let is_normal = thickness > SMALLEST;
     match rung {
+        Rung::Textbook | Rung::Robust if !is_normal => f64::INFINITY,
         Rung::Textbook => {
             let of_square = 128.0 * single * farthest * farthest / thickness;
             of_foot(single) + of_square / nearest
         }
         Rung::Robust => of_foot(single),
         Rung::Compensated | Rung::Double | Rung::Certified => of_foot(double) + single,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+    use spherule_kernel::Material;
+    use spherule_kernel::shape::Capsule;
+
+    use super::super::{DEFAULT_TOLERANCE, choose};
+    use super::*;
+    use crate::scene::{Scene, World};
+
+    /// Rods near by need robust; rods through a telescope, and so small that squares of their
+    /// lengths are no floats, need double.
+    #[test]
+    fn far_and_tiny_rods_need_double() {
+        for (scale, far, expected) in [
+            (1.0, 1.0, Rung::Robust),
+            (1e6, 1.0, Rung::Robust),
+            (1.0, 1e4, Rung::Double),
+            (1e-15, 1.0, Rung::Double),
+        ] {
+            let mut world = World::default();
+            let grey = world.add_material(Material::diffuse(Vec3::splat(0.5)));
+            let (start, end) = (Vec3::NEG_X * scale, Vec3::X * scale);
+            world.add_shape(Capsule::new(start, end, 0.2 * scale), grey);
+            let mut scene = Scene::new(world);
+            let mut view = scene.view_or_framed();
+            view.eye *= far;
+            view.vertical_fov /= f64::from(far);
+            scene.view = Some(view);
+            let choice = choose(&scene, DEFAULT_TOLERANCE, true);
+            assert_eq!(choice.rung, expected, "{scale:e} {far:e} {choice:?}");
+            assert!(choice.is_within);
+            // Without 64-bit floats there is no other rung.
+            let choice = choose(&scene, DEFAULT_TOLERANCE, false);
+            assert_eq!(choice.rung, Rung::Robust);
+            assert_eq!(choice.is_within, expected == Rung::Robust);
+        }
     }
 }
