@@ -55,8 +55,8 @@ fn main() -> spherule::Result<()> {
     Ok(())
 }
 
-/// The median time of a frame, without what is done once. On a GPU frames follow each other, so that
-/// its clock is up.
+/// The median time of a frame, without what is done once. On a GPU frames follow each other, so
+/// that its clock is up.
 fn frame_time(scene: &Scene, device: &Device) -> spherule::Result<Duration> {
     let settings = Settings::from((Shading::Normals, Rung::Robust));
     let launch = whole_image(scene)?;
