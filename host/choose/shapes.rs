@@ -74,11 +74,13 @@ mod tests {
     /// lengths are no floats, need double.
     #[test]
     fn far_and_tiny_rods_need_double() {
-        for (scale, far, expected) in [
-            (1.0, 1.0, Rung::Robust),
-            (1e6, 1.0, Rung::Robust),
-            (1.0, 1e4, Rung::Double),
-            (1e-15, 1.0, Rung::Double),
+        for (scale, far, expected, is_within) in [
+            (1.0, 1.0, Rung::Robust, true),
+            (1e6, 1.0, Rung::Robust, true),
+            (1.0, 1e3, Rung::Double, true),
+            // The rounding of t is more than a tenth of a pixel there.
+            (1.0, 1e4, Rung::Double, false),
+            (1e-15, 1.0, Rung::Double, true),
         ] {
             let mut world = World::default();
             let grey = world.add_material(Material::diffuse(Vec3::splat(0.5)));
@@ -91,7 +93,7 @@ mod tests {
             scene.view = Some(view);
             let choice = choose(&scene, DEFAULT_TOLERANCE, true);
             assert_eq!(choice.rung, expected, "{scale:e} {far:e} {choice:?}");
-            assert!(choice.is_within);
+            assert_eq!(choice.is_within, is_within, "{scale:e} {far:e} {choice:?}");
             // Without 64-bit floats there is no other rung.
             let choice = choose(&scene, DEFAULT_TOLERANCE, false);
             assert_eq!(choice.rung, Rung::Robust);
