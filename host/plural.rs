@@ -7,6 +7,16 @@ pub fn count_of(count: usize, noun: &str) -> String {
     format!("{count} {noun}{plural}")
 }
 
+/// What a world holds: "1 sphere", or "2 spheres, 1 other shape".
+#[must_use]
+pub fn contents_of(spheres: usize, shapes: usize) -> String {
+    let spheres = count_of(spheres, "sphere");
+    match shapes {
+        0 => spheres,
+        _ => format!("{spheres}, {}", count_of(shapes, "other shape")),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::count_of;

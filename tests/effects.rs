@@ -4,7 +4,7 @@ mod common;
 
 use std::path::Path;
 
-use common::{all_adapters, device, open_with_limits, skips};
+use common::{all_adapters, device, in_furnace, open_with_limits, skips};
 use glam::Vec3;
 use spherule::film::compare::{Comparison, Tolerance};
 use spherule::kernel::color::luminance;
@@ -65,21 +65,8 @@ fn furnace(material: Material) -> Scene {
     let mut world = World::default();
     let id = world.add_material(material);
     world.add(Sphere::new(Vec3::ZERO, 1.0), id);
-    let mut scene = Scene::new(world);
+    let mut scene = in_furnace(world);
     (scene.width, scene.height) = (64, 64);
-    scene.view = Some(View {
-        eye: Vec3::new(0.0, 0.0, 5.0),
-        target: Vec3::ZERO,
-        up: Vec3::Y,
-        vertical_fov: 22.0,
-    });
-    scene.sky = Some(Surroundings {
-        horizon: Vec3::ONE,
-        zenith: Vec3::ONE,
-        sun: None,
-        rotation: 0.0,
-        image: None,
-    });
     scene.sampling.samples = Some(64);
     scene.sampling.max_bounces = 200;
     scene

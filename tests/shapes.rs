@@ -5,7 +5,7 @@ mod common;
 
 use std::path::Path;
 
-use common::{all_adapters, device, devices};
+use common::{all_adapters, device, devices, in_furnace};
 use glam::{DVec3, Quat, Vec3};
 use spherule::accel::ShapeTree;
 use spherule::accuracy::shape_families::{Family, Known, ShapeErrors, measure};
@@ -16,7 +16,6 @@ use spherule::kernel::shape::{Capsule, Cone, Cuboid, Cylinder, Disc, Ellipsoid, 
 use spherule::kernel::{Hit, Material, Ray, Rung, Shading, Sphere};
 use spherule::render::{QUIET, Settings, render};
 use spherule::scene::shapes::RUNGS_OF_SHAPES;
-use spherule::scene::surroundings::Surroundings;
 use spherule::scene::{View, World};
 use spherule::{Device, Image, Scene};
 
@@ -486,21 +485,8 @@ fn furnace(shape: Shape, material: Material) -> Scene {
     let mut world = World::default();
     let id = world.add_material(material);
     world.add_shape(shape, id);
-    let mut scene = Scene::new(world);
+    let mut scene = in_furnace(world);
     (scene.width, scene.height) = (48, 48);
-    scene.view = Some(View {
-        eye: Vec3::new(0.0, 0.0, 5.0),
-        target: Vec3::ZERO,
-        up: Vec3::Y,
-        vertical_fov: 22.0,
-    });
-    scene.sky = Some(Surroundings {
-        horizon: Vec3::ONE,
-        zenith: Vec3::ONE,
-        sun: None,
-        rotation: 0.0,
-        image: None,
-    });
     scene.sampling.samples = Some(32);
     scene.sampling.max_bounces = 300;
     scene

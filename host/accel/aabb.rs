@@ -38,10 +38,7 @@ impl Aabb {
         let size = sphere.center().as_dvec3().abs() + first.abs().max(last.abs());
         let low = first.min(last) - radius - size * 4e-7;
         let high = first.max(last) + radius + size * 4e-7;
-        Self {
-            low: Vec3::from_array(low.to_array().map(|x| (x as f32).next_down())).extend(0.0),
-            high: Vec3::from_array(high.to_array().map(|x| (x as f32).next_up())).extend(0.0),
-        }
+        Self::outwards(low, high)
     }
 
     /// The box around every position of a shape while the shutter is open, rounded outwards.
@@ -69,6 +66,11 @@ impl Aabb {
                 .max(last.1.abs());
         let low = first.0.min(last.0) - size * 4e-7;
         let high = first.1.max(last.1) + size * 4e-7;
+        Self::outwards(low, high)
+    }
+
+    /// The box between two corners, rounded outwards.
+    fn outwards(low: DVec3, high: DVec3) -> Self {
         Self {
             low: Vec3::from_array(low.to_array().map(|x| (x as f32).next_down())).extend(0.0),
             high: Vec3::from_array(high.to_array().map(|x| (x as f32).next_up())).extend(0.0),

@@ -34,11 +34,7 @@ impl ShapeTree {
             kinds: world.kinds(),
             shapes: tree.sort(&world.shapes),
             material_ids: tree.sort(&world.shape_material_ids),
-            velocities: if world.shape_velocities.is_empty() {
-                Vec::new()
-            } else {
-                tree.sort(&world.shape_velocities)
-            },
+            velocities: tree.sort_any(&world.shape_velocities),
             nodes: tree.nodes,
         }
     }

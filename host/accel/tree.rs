@@ -87,17 +87,22 @@ impl BuiltTree {
             .collect()
     }
 
+    /// [`BuiltTree::sort`] of values that there may be none of.
+    pub(super) fn sort_any<T: Zeroable + Copy + Send + Sync>(&self, values: &[T]) -> Vec<T> {
+        if values.is_empty() {
+            Vec::new()
+        } else {
+            self.sort(values)
+        }
+    }
+
     /// The world with its spheres in the order of the leaves.
     #[must_use]
     pub fn sort_world(&self, world: &World) -> World {
         World {
             spheres: self.sort(&world.spheres),
             material_ids: self.sort(&world.material_ids),
-            velocities: if world.velocities.is_empty() {
-                Vec::new()
-            } else {
-                self.sort(&world.velocities)
-            },
+            velocities: self.sort_any(&world.velocities),
             materials: world.materials.clone(),
             material_names: world.material_names.clone(),
             shapes: world.shapes.clone(),

@@ -73,24 +73,28 @@ pub struct Choice {
     pub cheaper: Option<(Rung, f64)>,
 }
 
-/// The rungs that are tried before `certified`, the cheapest first. If `robust` is not enough, most
-/// rays need more digits, and then `double` was cheaper than `certified` on every device that was
-/// measured. `compensated` is never the cheapest.
-fn cheap_rungs(has_f64: bool) -> &'static [Rung] {
-    if has_f64 {
-        &[Rung::Robust, Rung::Double]
-    } else {
-        &[Rung::Robust]
+/// The rungs that are tried, the cheapest first, and the one that is taken if none of them is
+/// enough. If `robust` is not enough, most rays need more digits, and then `double` was cheaper
+/// than
+/// `certified` on every device that was measured. `compensated` is never the cheapest. Shapes
+/// beside spheres have no rung above `double`.
+fn rungs(has_f64: bool, has_shapes: bool) -> (&'static [Rung], Rung) {
+    match (has_f64, has_shapes) {
+        (true, false) => (&[Rung::Robust, Rung::Double], Rung::Certified),
+        (false, false) => (&[Rung::Robust], Rung::Certified),
+        (true, true) => (&[Rung::Robust], Rung::Double),
+        (false, true) => (&[], Rung::Robust),
     }
 }
 
 /// The cheapest rung whose bound is within `tolerance` pixels for the scene and its camera, on a
-/// device with or without 64-bit floats; `certified` if there is none.
+/// device with or without 64-bit floats; the most exact one that the scene can have if there is
+/// none.
 #[must_use]
 pub fn choose(scene: &Scene, tolerance: f64, has_f64: bool) -> Choice {
+    let (cheap, most_exact) = rungs(has_f64, !scene.world.shapes.is_empty());
     let mut cheaper = None;
-    let rungs = cheap_rungs(has_f64);
-    for rung in rungs {
+    for rung in cheap {
         let bound = bound(scene, *rung, tolerance);
         if bound <= tolerance {
             return Choice {
@@ -100,20 +104,11 @@ pub fn choose(scene: &Scene, tolerance: f64, has_f64: bool) -> Choice {
                 cheaper,
             };
         }
-        if !scene.world.shapes.is_empty() && Some(rung) == rungs.last() {
-            // There is none above for other shapes.
-            return Choice {
-                rung: *rung,
-                bound,
-                is_within: false,
-                cheaper,
-            };
-        }
         cheaper = Some((*rung, bound));
     }
-    let bound = bound(scene, Rung::Certified, tolerance);
+    let bound = bound(scene, most_exact, tolerance);
     Choice {
-        rung: Rung::Certified,
+        rung: most_exact,
         bound,
         is_within: bound <= tolerance,
         cheaper,

@@ -16,7 +16,7 @@ use super::{load, note, write_json};
 use crate::choose::DEFAULT_TOLERANCE;
 use crate::device::Device;
 use crate::error::Result;
-use crate::plural::count_of;
+use crate::plural::{contents_of, count_of};
 use crate::render::EffectChoice;
 use crate::render::Settings;
 use crate::render::cost::{self, Cost};
@@ -220,15 +220,11 @@ fn table(report: &ExplainReport) -> String {
 /// What is rendered, on what, and how much of it was measured.
 fn add_scene(text: &mut String, report: &ExplainReport) -> fmt::Result {
     let [width, height] = report.whole_image;
-    let mut contents = count_of(report.spheres, "sphere");
-    if report.shapes > 0 {
-        contents += &format!(", {}", count_of(report.shapes, "other shape"));
-    }
     writeln!(
         text,
         "{}: {}, {width} × {height} pixels, {}, at most {}\n{}, precision {} ({})",
         report.scene,
-        contents,
+        contents_of(report.spheres, report.shapes),
         count_of(report.whole_samples as usize, "sample"),
         count_of(report.max_bounces as usize, "bounce"),
         report.device,

@@ -8,7 +8,7 @@ use spherule_kernel::{Material, Sphere};
 
 use crate::error::Result;
 use crate::memory;
-use crate::plural::count_of;
+use crate::plural::contents_of;
 
 /// With fewer spheres than this, a single thread does the work.
 pub(crate) const GRAIN: usize = 1 << 13;
@@ -86,7 +86,8 @@ impl World {
 
     /// Adds a shape beside the spheres with the material of this index.
     ///
-    /// A capsule whose ends are the same is a sphere, and becomes one.
+    /// A capsule whose ends are the same is a sphere, and becomes one; so does an ellipsoid with
+    /// three equal half-axes.
     ///
     /// ```
     /// use spherule::kernel::{Material, glam::Vec3, shape::Capsule};
@@ -135,11 +136,7 @@ impl World {
 
     /// How many spheres and other shapes there are, for messages.
     pub(crate) fn contents(&self) -> String {
-        let spheres = count_of(self.spheres.len(), "sphere");
-        match self.shapes.len() {
-            0 => spheres,
-            shapes => format!("{spheres}, {}", count_of(shapes, "other shape")),
-        }
+        contents_of(self.spheres.len(), self.shapes.len())
     }
 
     /// The kinds of shapes that there are beside the spheres.

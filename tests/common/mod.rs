@@ -10,9 +10,12 @@
 
 use std::sync::OnceLock;
 
+use glam::Vec3;
 use spherule::device::adapter::{adapters, instance};
 use spherule::device::{Device, Gpu, GpuOptions};
-use spherule::wgpu;
+use spherule::scene::surroundings::Surroundings;
+use spherule::scene::{View, World};
+use spherule::{Scene, wgpu};
 
 /// Every adapter of this machine.
 pub fn all_adapters() -> &'static [wgpu::Adapter] {
@@ -117,4 +120,24 @@ pub fn opacities(image: &spherule::Image) -> Vec<f32> {
     (0..image.pixels().len())
         .map(|index| image.opacity(index))
         .collect()
+}
+
+/// A world around the origin, seen from five units away in surroundings of radiance one: what
+/// reflects or transmits all light is invisible there.
+pub fn in_furnace(world: World) -> Scene {
+    let mut scene = Scene::new(world);
+    scene.view = Some(View {
+        eye: Vec3::new(0.0, 0.0, 5.0),
+        target: Vec3::ZERO,
+        up: Vec3::Y,
+        vertical_fov: 22.0,
+    });
+    scene.sky = Some(Surroundings {
+        horizon: Vec3::ONE,
+        zenith: Vec3::ONE,
+        sun: None,
+        rotation: 0.0,
+        image: None,
+    });
+    scene
 }

@@ -11,7 +11,7 @@ use super::sphere::Known;
 use super::value::Value;
 use crate::error::Result;
 use crate::scene::limits::Range;
-use crate::scene::{World, limits};
+use crate::scene::{World, limits, shapes};
 
 /// A table of a shape, whatever its own keys are.
 pub(super) trait ShapeTable {
@@ -152,6 +152,44 @@ impl Reader<'_> {
         let id = material.unwrap_or_else(|| Known::grey(world, grey));
         world.add_moving_shape(shape, id, velocity);
         Ok(())
+    }
+
+    /// The material of a shape, which may not be hollow; `None` for grey.
+    fn material_of_shape(
+        &self,
+        value: Option<&Spanned<Value>>,
+        known: &Known<'_>,
+        what: &str,
+    ) -> Result<Option<u32>> {
+        let Some(value) = value else {
+            return Ok(None);
+        };
+        let (id, hollow) = self.named_material(value, known)?;
+        if hollow.is_some() {
+            return Err(self
+                .wrong(
+                    value,
+                    format!("this {what} is of hollow glass"),
+                    "has a thickness",
+                    "give it a material without thickness: only spheres may be hollow",
+                )
+                .into());
+        }
+        Ok(Some(id))
+    }
+
+    /// Fails for a shape that reaches, or moves, too far.
+    fn reaches(
+        &self,
+        place: &Spanned<Value>,
+        shape: &Shape,
+        velocity: Vec3,
+        shutter: (f32, f32),
+    ) -> Result<()> {
+        if shapes::is_within(shape, velocity, shutter) {
+            return Ok(());
+        }
+        Err(self.too_far(place, shape.name(), velocity).into())
     }
 
     /// Two points that are not the same.

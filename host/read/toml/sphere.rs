@@ -4,7 +4,6 @@ use serde::Deserialize;
 use std::collections::BTreeMap;
 
 use glam::Vec3;
-use spherule_kernel::shape::Shape;
 use spherule_kernel::{Material, Sphere};
 use toml::Spanned;
 
@@ -13,7 +12,7 @@ use super::split::{Batch, Piece};
 use super::value::Value;
 use super::value::said;
 use crate::error::{Error, Result, SceneError};
-use crate::scene::{World, limits, shapes};
+use crate::scene::{World, limits};
 use crate::shown::shown;
 
 #[derive(Deserialize)]
@@ -131,7 +130,11 @@ impl Reader<'_> {
     }
 
     /// The material with the name that a table gives.
-    fn named_material(&self, value: &Spanned<Value>, known: &Known<'_>) -> Result<NamedMaterial> {
+    pub(super) fn named_material(
+        &self,
+        value: &Spanned<Value>,
+        known: &Known<'_>,
+    ) -> Result<NamedMaterial> {
         let name = self.text("material", value)?;
         let named = known.ids.get(name).copied();
         named.ok_or_else(|| {
@@ -149,45 +152,13 @@ impl Reader<'_> {
         })
     }
 
-    /// The same of a shape beside the spheres, which may not be hollow; `None` for grey.
-    pub(super) fn material_of_shape(
-        &self,
-        value: Option<&Spanned<Value>>,
-        known: &Known<'_>,
-        what: &str,
-    ) -> Result<Option<u32>> {
-        let Some(value) = value else {
-            return Ok(None);
-        };
-        let (id, hollow) = self.named_material(value, known)?;
-        if hollow.is_some() {
-            return Err(self
-                .wrong(
-                    value,
-                    format!("this {what} is of hollow glass"),
-                    "has a thickness",
-                    "give it a material without thickness: only spheres may be hollow",
-                )
-                .into());
-        }
-        Ok(Some(id))
-    }
-
-    /// Fails for a shape beside the spheres that reaches, or moves, too far.
-    pub(super) fn reaches(
+    /// The error for what reaches, or moves, too far.
+    pub(super) fn too_far(
         &self,
         place: &Spanned<Value>,
-        shape: &Shape,
+        what: &str,
         velocity: Vec3,
-        shutter: (f32, f32),
-    ) -> Result<()> {
-        if shapes::is_within(shape, velocity, shutter) {
-            return Ok(());
-        }
-        Err(self.too_far(place, shape.name(), velocity).into())
-    }
-
-    fn too_far(&self, place: &Spanned<Value>, what: &str, velocity: Vec3) -> Box<SceneError> {
+    ) -> Box<SceneError> {
         let how = if velocity == Vec3::ZERO {
             "reaches"
         } else {
@@ -219,7 +190,7 @@ impl Reader<'_> {
 const MAX_TABLE: usize = 1 << 16;
 
 /// A material's index; for hollow spheres also the thickness and the index of the inner material.
-type NamedMaterial = (u32, Option<(f32, u32)>);
+pub(super) type NamedMaterial = (u32, Option<(f32, u32)>);
 
 /// What the spheres of a scene refer to.
 pub(super) struct Known<'a> {
